@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: Apache-2.0 OR MIT
+# The one door: `make demo` and `make test` set up all they need.
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+CORE := python/lamplit/_core.abi3.so
+RUST := Cargo.toml Cargo.lock $(shell find crates -name '*.rs' -o -name Cargo.toml)
+export PIP_DISABLE_PIP_VERSION_CHECK := 1
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test check format bench docs wheel clean
+
+help: ## say what each target does
+	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 10
+
+# Python and its libraries, at the versions of the lock file.
+$(VENV)/.ready: requirements/dev.lock
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10))' \
+	  || { echo "Lamplit needs Python 3.10 or later: make PYTHON=python3.12 ..."; exit 1; }
+	@command -v cargo >/dev/null || { echo "Lamplit needs a Rust toolchain (https://rustup.rs)"; exit 1; }
+	$(PYTHON) -m venv --clear $(VENV)
+	$(BIN)/python -m pip install --quiet --no-deps -r requirements/dev.lock
+	@touch $@
+
+# The compiled core and the package, installed in place.
+$(CORE): $(VENV)/.ready $(RUST) pyproject.toml
+	VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --locked --skip-install --quiet
+	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .
+	@touch $@
+
+demo: $(CORE) ## render and measure the example rear lamp; says which files to open
+	$(BIN)/python examples/demo.py
+
+test: $(CORE) ## run every test: Rust, Python, doctests, the wheel
+	cargo test --workspace --locked --quiet
+	$(BIN)/python -m pytest
+
+check: $(CORE) ## format, lints, types, stubs: all must be clean
+	cargo fmt --all --check
+	cargo clippy --workspace --all-targets --locked --quiet -- -D warnings
+	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked --quiet
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/basedpyright
+	$(BIN)/python -m mypy.stubtest lamplit._core --ignore-disjoint-bases
+
+format: $(VENV)/.ready ## put the code into its format
+	cargo fmt --all
+	$(BIN)/ruff format .
+	$(BIN)/ruff check --fix .
+
+bench: $(CORE) ## measure speed against peers; writes benchmarks/results/
+	$(BIN)/python benchmarks/run.py
+
+docs: $(CORE) ## make the pictures, tables and API pages of docs/ again
+	$(BIN)/python docs/make.py
+
+wheel: $(VENV)/.ready ## one self-contained abi3 wheel in dist/
+	$(BIN)/maturin build --release --locked --quiet --out dist
+
+clean: ## remove what the other targets made
+	rm -rf target $(VENV) $(CORE) dist out build

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0 OR MIT
+//! [`Film`]: what every pixel has gathered, as sums in the order of its samples.
+
+use crate::spectrum::{SampledSpectrum, SampledWavelengths, LANES};
+
+/// The sums of one pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PixelSums {
+    /// Σ X, Σ Y, Σ Z in cd/m².
+    pub xyz: [f64; 3],
+    /// Σ X², Σ Y², Σ Z².
+    pub squares: [f64; 3],
+    /// How many samples.
+    pub samples: u32,
+}
+
+impl PixelSums {
+    /// Add a sample's X, Y and Z.
+    pub fn add(&mut self, xyz: [f64; 3]) {
+        for (i, value) in xyz.into_iter().enumerate() {
+            self.xyz[i] += value;
+            self.squares[i] += value * value;
+        }
+        self.samples += 1;
+    }
+
+    /// The mean X, Y and Z; nothing where there is no sample.
+    pub fn mean(&self) -> [f64; 3] {
+        let n = f64::from(self.samples.max(1));
+        self.xyz.map(|sum| sum / n)
+    }
+
+    /// The standard errors of the mean, √((Σx² − (Σx)²/n)/(n(n − 1))); infinite below two samples.
+    pub fn standard_error(&self) -> [f64; 3] {
+        let n = f64::from(self.samples);
+        if self.samples < 2 {
+            return [f64::INFINITY; 3];
+        }
+        [0, 1, 2].map(|i| {
+            let spread = self.squares[i] - self.xyz[i] * self.xyz[i] / n;
+            (spread.max(0.0) / (n * (n - 1.0))).sqrt()
+        })
+    }
+}
+
+/// The spectral sums of one pixel: LANES·`per_lane` bands of equal width.
+#[derive(Debug)]
+pub struct BandSums<'a> {
+    /// Σ spectral radiance per band.
+    pub sums: &'a mut [f64],
+    /// How many samples each of the `per_lane` parts of a lane has.
+    pub visits: &'a mut [u32],
+}
+
+impl BandSums<'_> {
+    /// Add a sample of one of `phases` phases.
+    pub fn add(
+        &mut self,
+        radiance: SampledSpectrum,
+        wavelengths: SampledWavelengths,
+        phases: usize,
+    ) {
+        let per_lane = self.visits.len();
+        let part = wavelengths.phase * per_lane / phases;
+        self.visits[part] += 1;
+        for (lane, value) in radiance.0.into_iter().enumerate() {
+            self.sums[lane * per_lane + part] += value;
+        }
+    }
+}
+
+/// A picture in the making.
+#[derive(Debug)]
+pub struct Film {
+    /// Pixels along a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// The sums, row by row from the upper left.
+    pub pixels: Vec<PixelSums>,
+    /// Bands per lane; 0 for a film without spectra.
+    pub bands_per_lane: usize,
+    /// The spectral sums, pixel by pixel, [`Film::bands`] for each.
+    pub band_sums: Vec<f64>,
+    /// How many samples each part of the lanes has, pixel by pixel.
+    pub band_visits: Vec<u32>,
+}
+
+impl Film {
+    /// An empty film.
+    pub fn new(width: u32, height: u32, bands_per_lane: usize) -> Self {
+        let count = width as usize * height as usize;
+        Self {
+            width,
+            height,
+            pixels: vec![PixelSums::default(); count],
+            bands_per_lane,
+            band_sums: vec![0.0; count * bands_per_lane * LANES],
+            band_visits: vec![0; count * bands_per_lane],
+        }
+    }
+
+    /// How many bands a pixel has.
+    pub fn bands(&self) -> usize {
+        self.bands_per_lane * LANES
+    }
+
+    /// The mean spectral radiance of every band of every pixel; nothing where there is no sample.
+    pub fn band_means(&self) -> Vec<f64> {
+        let bands = self.bands().max(1);
+        let per_lane = self.bands_per_lane.max(1);
+        self.band_sums
+            .iter()
+            .enumerate()
+            .map(|(at, sum)| {
+                let (pixel, band) = (at / bands, at % bands);
+                let visits = self.band_visits[pixel * per_lane + band % per_lane];
+                sum / f64::from(visits.max(1))
+            })
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn mean_and_standard_error_are_those_of_the_samples() {
+        let mut sums = PixelSums::default();
+        for value in [1.0, 2.0, 3.0, 6.0] {
+            sums.add([value, 2.0 * value, 0.0]);
+        }
+        assert_eq!(sums.mean(), [3.0, 6.0, 0.0]);
+        // The variance is 14/3, and that of the mean a quarter of it.
+        let expected = (14.0_f64 / 12.0).sqrt();
+        for (got, factor) in sums.standard_error().into_iter().zip([1.0, 2.0, 0.0]) {
+            assert!((got - factor * expected).abs() < 1e-15);
+        }
+        let mut one = PixelSums::default();
+        one.add([1.0; 3]);
+        assert_eq!(one.standard_error(), [f64::INFINITY; 3]);
+    }
+
+    #[test]
+    fn each_phase_falls_into_the_band_of_its_wavelengths() {
+        let mut film = Film::new(1, 1, 5);
+        let phases = 25;
+        for phase in 0..phases {
+            let wavelength = |lane: usize| (lane * phases + phase) as f64;
+            let mut bands = BandSums { sums: &mut film.band_sums, visits: &mut film.band_visits };
+            bands.add(SampledSpectrum::from_fn(wavelength), SampledWavelengths { phase }, phases);
+        }
+        let expected: Vec<f64> = (0..80).map(|band| f64::from(band * 5 + 2)).collect();
+        assert_eq!(film.band_means(), expected);
+    }
+}

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0 OR MIT
+//! An 8-wide bounding volume hierarchy over triangles: single precision finds, double precision decides.
+//!
+//! Nodes and triangles are stored in single precision, eight to a row, and tested eight at a time.
+//! Both single-precision tests (box and triangle) are *conservative*: their rounding errors are bounded
+//! and added, so they may let a near miss through but never lose a hit. What they let through is decided
+//! in double precision, one triangle at a time, by a watertight test ([`exact`]). The hit therefore depends
+//! on neither the instruction set nor the order of traversal, and is as accurate as `f64` allows.
+//!
+//! [`build`] makes the tree, [`layout`] writes it into arrays, [`probe`] prepares a ray, [`traverse`] walks
+//! the tree over the [`lanes`] of one instruction set, [`kernel`] chooses that set at run time.
+
+use glam::{DVec3, Vec3};
+
+mod build;
+mod exact;
+mod kernel;
+mod lanes;
+mod layout;
+mod probe;
+mod split;
+mod traverse;
+#[cfg(target_arch = "x86_64")]
+mod x86;
+
+pub use kernel::Kernel;
+use probe::Probe;
+pub(super) use probe::Segment;
+
+/// Triangles per block, children per node: the lanes of one 256-bit register of `f32`.
+pub(super) const WIDTH: usize = 8;
+
+/// No tree is deeper than this (`build` turns to median splits in time), so a stack of fixed size suffices.
+const MAX_DEPTH: usize = 36;
+
+/// Eight triangles, corner by corner and axis by axis, lane = triangle. Unused lanes repeat the first.
+#[derive(Clone)]
+#[repr(C, align(64))]
+struct Block {
+    /// `corners[corner][axis][lane]`, relative to the centre of the scene, in the unit of the scene.
+    corners: [[[f32; WIDTH]; 3]; 3],
+    /// Index of each triangle in the caller's list.
+    triangles: [u32; WIDTH],
+}
+
+/// A node: the boxes of up to eight children, smallest number of triangles first.
+#[derive(Clone)]
+#[repr(C, align(64))]
+struct Node {
+    /// `bounds[2 * axis]` holds the lower, `bounds[2 * axis + 1]` the upper sides; unused slots are empty boxes.
+    bounds: [[f32; WIDTH]; 6],
+    children: [Link; WIDTH],
+    /// Per octant of directions, the slots from near to far, three bits each.
+    order: [u32; 8],
+}
+
+/// Where a child is: a node, or a block and the number of its lanes in use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Link(u32);
+
+impl Link {
+    const LEAF: u32 = 1 << 31;
+    /// Blocks that a link can tell apart.
+    const MAX_BLOCKS: usize = 1 << 28;
+
+    fn node(index: usize) -> Self {
+        Self(index as u32)
+    }
+
+    fn leaf(block: usize, lanes: usize) -> Self {
+        Self(Self::LEAF | (block as u32) << 3 | (lanes as u32 - 1))
+    }
+
+    #[inline(always)]
+    fn is_leaf(self) -> bool {
+        self.0 & Self::LEAF != 0
+    }
+
+    #[inline(always)]
+    fn node_index(self) -> usize {
+        self.0 as usize
+    }
+
+    #[inline(always)]
+    fn block_index(self) -> usize {
+        ((self.0 & !Self::LEAF) >> 3) as usize
+    }
+
+    /// One bit for each lane of the block that is in use.
+    #[inline(always)]
+    fn lane_mask(self) -> u32 {
+        (2 << (self.0 & 7)) - 1
+    }
+}
+
+/// The largest number of triangles that a [`Tree`] can hold.
+pub(super) const MAX_TRIANGLES: usize = Link::MAX_BLOCKS;
+
+/// The hierarchy over a set of triangles.
+pub(super) struct Tree {
+    nodes: Vec<Node>,
+    blocks: Vec<Block>,
+    root: Link,
+    /// The largest coordinate on each axis, without sign.
+    half_extent: DVec3,
+    /// One that this processor has.
+    kernel: Kernel,
+}
+
+/// A triangle that a ray crosses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Crossing {
+    /// Distance from the origin of the ray as given.
+    pub t: f64,
+    /// Weights of the corners: their sum is not one.
+    pub weights: [f64; 3],
+    /// Index in the caller's list.
+    pub triangle: u32,
+    slot: u32,
+}
+
+impl Tree {
+    /// Builds the tree of triangles whose corners are in `vertices`: relative to the centre, all finite,
+    /// at least one triangle and at most [`MAX_TRIANGLES`], every index within `vertices`.
+    pub fn build(vertices: &[[f32; 3]], triangles: &[[u32; 3]]) -> Self {
+        let half_extent = triangles
+            .iter()
+            .flatten()
+            .map(|&vertex| Vec3::from_array(vertices[vertex as usize]).abs())
+            .fold(Vec3::ZERO, Vec3::max)
+            .as_dvec3();
+        let mut references = build::references(vertices, triangles);
+        let subtree = build::subtree(&mut references);
+        let (nodes, blocks, root) = layout::write(&subtree, &references, vertices, triangles);
+        Self {
+            nodes,
+            blocks,
+            root,
+            half_extent,
+            kernel: Kernel::best(),
+        }
+    }
+
+    pub fn kernel(&self) -> Kernel {
+        self.kernel
+    }
+
+    /// Chooses the kernel; false, and no change, if this processor does not have it.
+    pub fn choose_kernel(&mut self, kernel: Kernel) -> bool {
+        if kernel.is_available() {
+            self.kernel = kernel;
+        }
+        kernel.is_available()
+    }
+
+    /// The nearest triangle that the ray crosses; of several at the same distance, the one with the lowest index.
+    pub fn closest(&self, segment: &Segment) -> Option<Crossing> {
+        self.kernel.closest(self, segment)
+    }
+
+    /// Does the ray cross any triangle?
+    pub fn any(&self, segment: &Segment) -> bool {
+        self.kernel.any(self, segment)
+    }
+
+    /// Corners of the triangle that was crossed, relative to the centre.
+    pub fn corners(&self, crossing: &Crossing) -> [DVec3; 3] {
+        let slot = crossing.slot as usize;
+        self.blocks[slot / WIDTH].corners(slot % WIDTH, [0, 1, 2])
+    }
+
+    /// The largest coordinate on each axis, without sign.
+    pub fn half_extent(&self) -> DVec3 {
+        self.half_extent
+    }
+
+    /// Bytes of nodes and blocks.
+    pub fn memory_bytes(&self) -> usize {
+        size_of_val(self.nodes.as_slice()) + size_of_val(self.blocks.as_slice())
+    }
+}
+
+impl Block {
+    /// The corners of a triangle, with their coordinates in the order of `axes`.
+    #[inline(always)]
+    fn corners(&self, lane: usize, axes: [usize; 3]) -> [DVec3; 3] {
+        [
+            self.corner(0, lane, axes),
+            self.corner(1, lane, axes),
+            self.corner(2, lane, axes),
+        ]
+    }
+
+    #[inline(always)]
+    fn corner(&self, corner: usize, lane: usize, [i, j, k]: [usize; 3]) -> DVec3 {
+        let (axes, lane) = (&self.corners[corner], lane % WIDTH);
+        let [x, y, z] = [axes[i % 3][lane], axes[j % 3][lane], axes[k % 3][lane]];
+        DVec3::new(f64::from(x), f64::from(y), f64::from(z))
+    }
+}

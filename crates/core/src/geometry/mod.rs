@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0 OR MIT
+//! Where rays meet surfaces: primitives by their equations, and triangles by an 8-wide BVH.
+
+mod bvh;
+mod primitive;
+mod ray;
+mod triangles;
+
+pub use bvh::Kernel;
+pub use primitive::{
+    Cone, ConvexPolyhedron, Cylinder, Disc, Plane, Primitive, PrimitiveError, Shape, Sphere,
+};
+pub use ray::{Ray, SurfacePoint};
+pub use triangles::{TriangleHit, Triangles, TrianglesError};

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0 OR MIT
+//! [`Material`]: the optics of a surface or body, and its terms in Hall's shading model.
+
+use super::fresnel::{conductor_reflectance, dielectric_reflectance};
+use crate::math::DVec3;
+use crate::spectrum::{SampledSpectrum, SampledWavelengths, SpectralTable, LANES};
+
+/// A transparent body.
+#[derive(Clone, Debug)]
+pub struct Dielectric {
+    /// The refractive index n(λ).
+    pub index: SpectralTable,
+    /// The index at 587.56 nm (helium d), for directions that all lanes share.
+    pub index_d: f64,
+    /// The Napierian absorption coefficient in mm⁻¹.
+    pub absorption: SpectralTable,
+}
+
+impl Dielectric {
+    /// The index that steers a group of lanes: n_d for all lanes, else the mean of the group's.
+    pub fn steering_index(
+        &self,
+        wavelengths: SampledWavelengths,
+        lanes: &std::ops::Range<usize>,
+    ) -> f64 {
+        if lanes.len() == LANES {
+            return self.index_d;
+        }
+        let row = self.index.at(wavelengths);
+        row.0[lanes.clone()].iter().sum::<f64>() / lanes.len() as f64
+    }
+}
+
+/// Two reflectances in squares.
+#[derive(Clone, Debug)]
+pub struct Checker {
+    /// The diffuse reflectance of the first square, which starts at the origin.
+    pub first: SpectralTable,
+    /// The diffuse reflectance of its neighbours.
+    pub second: SpectralTable,
+    /// The side of a square, in mm.
+    pub square: f64,
+}
+
+impl Checker {
+    /// The reflectance at a point of the world.
+    pub fn at(&self, point: DVec3) -> &SpectralTable {
+        // A point within rounding of a plane through the origin is on one side of it.
+        let cell = |x: f64| (x / self.square + 1e-6).floor() as i64;
+        let sum = cell(point.x) + cell(point.y) + cell(point.z);
+        if sum.rem_euclid(2) == 0 {
+            &self.first
+        } else {
+            &self.second
+        }
+    }
+}
+
+/// What a surface does with light.
+#[derive(Clone, Debug)]
+pub enum Optics {
+    /// A transparent body with a smooth surface.
+    Dielectric(Dielectric),
+    /// A metal with n and k; `factor` stands for a lacquer's loss.
+    Conductor {
+        /// n(λ).
+        n: SpectralTable,
+        /// k(λ).
+        k: SpectralTable,
+        /// What the bare metal's reflectance is multiplied with.
+        factor: f64,
+    },
+    /// A mirror of measured reflectance.
+    Mirror(SpectralTable),
+    /// A matt surface.
+    Diffuse(SpectralTable),
+    /// A matt surface of two reflectances.
+    Checker(Checker),
+    /// A smooth dielectric coat over an opaque matt base.
+    Glossy {
+        /// The coat's index n(λ).
+        index: SpectralTable,
+        /// The base's diffuse reflectance.
+        base: SpectralTable,
+    },
+}
+
+/// The weights and spectra of Hall's model, eqs. (3) and (4).
+#[derive(Clone, Debug)]
+pub struct HallTerms {
+    /// k_sr, the weight of reflection.
+    pub reflection_weight: f64,
+    /// k_st, the weight of transmission.
+    pub transmission_weight: f64,
+    /// k_sa, the weight of ambient light.
+    pub ambient_weight: f64,
+    /// n, the highlight exponent.
+    pub highlight_exponent: f64,
+    /// F_sr in place of the material's own.
+    pub specular_reflectance: Option<SpectralTable>,
+    /// F_st in place of 1 − F_sr.
+    pub specular_transmittance: Option<SpectralTable>,
+    /// F_sa, the reflectance that answers ambient light, in place of the material's diffuse one.
+    pub ambient_reflectance: Option<SpectralTable>,
+}
+
+/// A material of the scene.
+#[derive(Clone, Debug)]
+pub struct Material {
+    /// The physics.
+    pub optics: Optics,
+    /// Its terms in the founding method.
+    pub hall: HallTerms,
+}
+
+impl Material {
+    /// The transparent body's optics, if it is one.
+    pub fn dielectric(&self) -> Option<&Dielectric> {
+        match &self.optics {
+            Optics::Dielectric(dielectric) => Some(dielectric),
+            _ => None,
+        }
+    }
+
+    /// The diffuse reflectance at a point: that of the base below a coat, none for smooth matter.
+    pub fn diffuse_reflectance(
+        &self,
+        point: DVec3,
+        wavelengths: SampledWavelengths,
+    ) -> Option<SampledSpectrum> {
+        match &self.optics {
+            Optics::Diffuse(reflectance) => Some(reflectance.at(wavelengths)),
+            Optics::Checker(checker) => Some(checker.at(point).at(wavelengths)),
+            Optics::Glossy { base, .. } => Some(base.at(wavelengths)),
+            Optics::Dielectric(_) | Optics::Conductor { .. } | Optics::Mirror(_) => None,
+        }
+    }
+
+    /// The mirror-like reflectance of an opaque surface seen through a medium of index
+    /// `medium_index`; none for matt surfaces and for transparent bodies.
+    pub fn opaque_specular_reflectance(
+        &self,
+        cos_i: f64,
+        medium_index: SampledSpectrum,
+        wavelengths: SampledWavelengths,
+    ) -> Option<SampledSpectrum> {
+        match &self.optics {
+            Optics::Conductor { n, k, factor } => {
+                let (n, k) = (n.at(wavelengths) / medium_index, k.at(wavelengths) / medium_index);
+                Some(n.zip(k, |n, k| factor * conductor_reflectance(cos_i, n, k)))
+            }
+            Optics::Mirror(reflectance) => Some(reflectance.at(wavelengths)),
+            Optics::Glossy { index, .. } => {
+                let eta = index.at(wavelengths) / medium_index;
+                Some(eta.map(|eta| dielectric_reflectance(cos_i, eta)))
+            }
+            Optics::Dielectric(_) | Optics::Diffuse(_) | Optics::Checker(_) => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table(value: f64) -> SpectralTable {
+        SpectralTable::from_ascending(&[value; LANES]).unwrap()
+    }
+
+    #[test]
+    fn a_checker_changes_from_square_to_square_and_not_within_rounding_of_its_plane() {
+        let checker = Checker { first: table(0.1), second: table(0.9), square: 10.0 };
+        let value = |x, y, z| checker.at(DVec3::new(x, y, z)).at(SampledWavelengths { phase: 0 }).0[0];
+        assert_eq!(value(5.0, 0.0, 5.0), 0.1);
+        assert_eq!(value(15.0, 0.0, 5.0), 0.9);
+        assert_eq!(value(15.0, 0.0, -5.0), 0.1);
+        assert_eq!(value(5.0, -1e-12, 5.0), 0.1);
+    }
+}

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0 OR MIT
+//! [`Camera`]: the eye.
+
+use thiserror::Error;
+
+use crate::math::{DVec2, DVec3, Ray};
+
+/// How the eye sees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Projection {
+    /// Through one point.
+    Pinhole {
+        /// The full vertical angle of the image, in degrees.
+        field_of_view_deg: f64,
+    },
+    /// By parallel rays.
+    Orthographic {
+        /// The height of what the image shows, in mm.
+        height: f64,
+    },
+}
+
+/// Why a camera cannot see.
+#[derive(Debug, Error, PartialEq)]
+pub enum CameraError {
+    /// Position and target are the same point, or `up` lies along the view.
+    #[error("the camera needs a target away from its position and an up that is not along its view")]
+    NoView,
+    /// The projection's number is out of range.
+    #[error("a field of view lies between 0 and 180 degrees, and an image height above 0 mm")]
+    Projection,
+}
+
+/// The eye: where it is, where it looks, and how wide.
+#[derive(Clone, Copy, Debug)]
+pub struct Camera {
+    position: DVec3,
+    forward: DVec3,
+    /// Half the image's height as a vector at unit distance (pinhole) or in mm (orthographic).
+    half_up: DVec3,
+    right: DVec3,
+    projection: Projection,
+}
+
+impl Camera {
+    /// A camera at `position` that looks at `target`, with `up` upwards in the image.
+    ///
+    /// # Errors
+    /// The view has no direction, or the projection's number is out of range.
+    pub fn new(
+        position: DVec3,
+        target: DVec3,
+        up: DVec3,
+        projection: Projection,
+    ) -> Result<Self, CameraError> {
+        let forward = (target - position).try_normalize().ok_or(CameraError::NoView)?;
+        let across = forward.cross(up.normalize_or_zero());
+        if across.length() < 1e-9 {
+            return Err(CameraError::NoView);
+        }
+        let right = across.normalize();
+        let half_height = match projection {
+            Projection::Pinhole { field_of_view_deg: fov } if fov > 0.0 && fov < 180.0 => {
+                (fov / 2.0).to_radians().tan()
+            }
+            Projection::Orthographic { height } if height > 0.0 && height.is_finite() => {
+                height / 2.0
+            }
+            _ => return Err(CameraError::Projection),
+        };
+        let half_up = right.cross(forward) * half_height;
+        Ok(Self { position, forward, half_up, right: right * half_height, projection })
+    }
+
+    /// Where the camera is.
+    pub fn position(&self) -> DVec3 {
+        self.position
+    }
+
+    /// The ray through a place of the image, in pixels from its upper left corner.
+    pub fn ray(&self, place: DVec2, width: u32, height: u32) -> Ray {
+        let half = f64::from(height) / 2.0;
+        let x = (place.x - f64::from(width) / 2.0) / half;
+        let y = 1.0 - place.y / half;
+        let aside = self.right * x + self.half_up * y;
+        match self.projection {
+            Projection::Pinhole { .. } => {
+                Ray::endless(self.position, (self.forward + aside).normalize())
+            }
+            Projection::Orthographic { .. } => Ray::endless(self.position + aside, self.forward),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_image_has_x_to_the_right_y_down_and_spans_the_vertical_field_of_view() {
+        let projection = Projection::Pinhole { field_of_view_deg: 90.0 };
+        let camera = Camera::new(DVec3::Z * 5.0, DVec3::ZERO, DVec3::Y, projection).unwrap();
+        let centre = camera.ray(DVec2::new(200.0, 100.0), 400, 200);
+        assert!((centre.direction + DVec3::Z).length() < 1e-15);
+        let top = camera.ray(DVec2::new(200.0, 0.0), 400, 200).direction;
+        assert!((top - DVec3::new(0.0, 1.0, -1.0).normalize()).length() < 1e-15);
+        let right = camera.ray(DVec2::new(400.0, 100.0), 400, 200).direction;
+        assert!((right - DVec3::new(2.0, 0.0, -1.0).normalize()).length() < 1e-15);
+    }
+
+    #[test]
+    fn parallel_rays_start_across_the_given_height() {
+        let projection = Projection::Orthographic { height: 20.0 };
+        let camera = Camera::new(DVec3::Z * 5.0, DVec3::ZERO, DVec3::Y, projection).unwrap();
+        let top = camera.ray(DVec2::new(50.0, 0.0), 100, 100);
+        assert!((top.origin - DVec3::new(0.0, 10.0, 5.0)).length() < 1e-14);
+        assert!((top.direction + DVec3::Z).length() < 1e-15);
+    }
+
+    #[test]
+    fn a_camera_without_a_view_is_refused() {
+        let projection = Projection::Pinhole { field_of_view_deg: 30.0 };
+        let at_itself = Camera::new(DVec3::ONE, DVec3::ONE, DVec3::Y, projection);
+        assert_eq!(at_itself.unwrap_err(), CameraError::NoView);
+        let along_up = Camera::new(DVec3::Y, DVec3::ZERO, DVec3::Y, projection);
+        assert_eq!(along_up.unwrap_err(), CameraError::NoView);
+        let wide = Projection::Pinhole { field_of_view_deg: 180.0 };
+        let too_wide = Camera::new(DVec3::Z, DVec3::ZERO, DVec3::Y, wide);
+        assert_eq!(too_wide.unwrap_err(), CameraError::Projection);
+    }
+}

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0 OR MIT
+//! A scene: bodies, lights and background, the eye, and the questions a walk asks of them.
+
+mod body;
+mod camera;
+mod interior;
+mod world;
+
+pub use body::{Body, BodyId};
+pub use camera::{Camera, CameraError, Projection};
+pub use interior::{Interior, LostRay};
+pub use world::{Scene, SceneBuilder, SceneError, SurfaceHit};

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0 OR MIT
+//! Arrays and tuples of Python as the core's types, and back.
+
+use lamplit_core::math::{DAffine3, DMat4, DVec3};
+use lamplit_core::spectrum::SpectralTable;
+use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+
+use crate::value_error;
+
+/// Three numbers as a vector.
+pub type Triple = [f64; 3];
+
+/// Read a spectrum given on all wavelengths in rising order.
+pub fn table(values: &PyReadonlyArray1<'_, f64>) -> PyResult<SpectralTable> {
+    SpectralTable::from_ascending(values.as_slice()?).map_err(value_error)
+}
+
+/// Read an (n, 3) array.
+pub fn triples<T: numpy::Element + Copy>(array: &PyReadonlyArray2<'_, T>) -> PyResult<Vec<[T; 3]>> {
+    let view = array.as_array();
+    if view.ncols() != 3 {
+        return Err(value_error(format!("an array of shape (n, 3) is needed, not {:?}", view.shape())));
+    }
+    Ok(view.rows().into_iter().map(|row| [row[0], row[1], row[2]]).collect())
+}
+
+/// Read a 4×4 matrix that acts on columns.
+pub fn affine(matrix: [[f64; 4]; 4]) -> DAffine3 {
+    DAffine3::from_mat4(DMat4::from_cols_array_2d(&matrix).transpose())
+}
+
+/// Read a vector.
+pub fn vector(triple: Triple) -> DVec3 {
+    DVec3::from_array(triple)
+}
+
+/// Hand a vector over as an array of the given shape.
+pub fn shaped<'py, T: numpy::Element, D>(
+    py: Python<'py>,
+    values: Vec<T>,
+    shape: D,
+) -> PyResult<Bound<'py, numpy::PyArray<T, D::Dim>>>
+where
+    D: numpy::ndarray::IntoDimension,
+{
+    PyArray1::from_vec(py, values).reshape(shape)
+}

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0 OR MIT
+//! `lamplit._core`: Python's door to `lamplit-core`.
+//!
+//! Arrays go in and come out; no physics happens here. The interpreter is free while a scene is
+//! built or rendered. A fault of the input is a `ValueError` with one line.
+
+mod arrays;
+mod builder;
+mod render;
+
+use pyo3::prelude::*;
+
+/// The compiled part of Lamplit.
+#[pymodule]
+mod _core {
+    #[pymodule_export]
+    use super::builder::{HallTerms, SceneBuilder};
+    #[pymodule_export]
+    use super::render::{Render, Scene};
+
+    /// How many wavelengths a path carries.
+    #[pymodule_export]
+    const LANES: usize = lamplit_core::spectrum::LANES;
+
+    /// The version of Lamplit.
+    #[pymodule_export]
+    #[allow(non_upper_case_globals)]
+    const __version__: &str = env!("CARGO_PKG_VERSION");
+}
+
+/// One line of Python's `ValueError` for an error of the core.
+fn value_error(error: impl std::fmt::Display) -> PyErr {
+    pyo3::exceptions::PyValueError::new_err(error.to_string())
+}

@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: Apache-2.0 OR MIT
+"""`render`: the picture of a scene."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Literal
+
+import numpy as np
+from pydantic import ValidationError
+
+from lamplit import _core
+from lamplit.engine.assembly import assemble
+from lamplit.engine.carrier import Array, Carrier, RgbCarrier, SpectralCarrier
+from lamplit.engine.image import Image
+from lamplit.errors import LamplitError, SceneError, nearest_name
+from lamplit.scene import Scene
+from lamplit.scene.camera import ImageSettings
+
+#: Called with the samples done and to do, over all pixels, a few times a second.
+ProgressCallback = Callable[[int, int], object]
+
+METHODS = ("hall",)
+
+#: Bands of the spectral picture per lane: 80 bands of 5 nm over 380–780 nm.
+_BANDS_PER_LANE = 5
+
+
+class RenderInterrupted(KeyboardInterrupt):
+    """Ctrl-C during a render; ``image`` holds what was done."""
+
+    def __init__(self, image: Image) -> None:
+        super().__init__(f"stopped with {image.samples} of {image.samples_asked} samples per pixel")
+        self.image = image
+
+
+def render(
+    scene: Scene,
+    *,
+    method: str = "hall",
+    colour: Literal["spectral", "rgb"] = "spectral",
+    samples: int | None = None,
+    threads: int | None = None,
+    spectral_bands: bool = False,
+    progress: ProgressCallback | None = None,
+) -> Image:
+    """Render ``scene`` and return tristimulus values in cd/m² with their standard errors.
+
+    ``method`` is ``hall``, the founding method. ``colour`` is ``rgb`` for the RGB half of a
+    comparison. ``samples`` per pixel stand in for the scene's own. ``threads`` of None takes one
+    per core; the result does not depend on it. ``spectral_bands`` keeps each pixel's spectrum.
+
+    Raises:
+        LamplitError: The scene or an argument cannot be used.
+        RenderInterrupted: Ctrl-C; its ``image`` has the samples that were done.
+    """
+    if method not in METHODS:
+        raise LamplitError(
+            f"there is no method {method!r}{nearest_name(method, METHODS)}; "
+            f"choose one of {', '.join(METHODS)}"
+        )
+    if samples is not None:
+        scene = _with_samples(scene, samples)
+    spectral = SpectralCarrier(scene.image.wavelength_range_nm, scene.image.observer)
+    carrier: Carrier = spectral
+    if colour == "rgb":
+        carrier = RgbCarrier(spectral, scene.resolve_source(scene.display.white))
+    bands = _BANDS_PER_LANE if spectral_bands and colour == "spectral" else 0
+    start = time.perf_counter()
+    world = assemble(scene, carrier)
+    built = time.perf_counter()
+    outcome = _trace(scene, world, bands=bands, threads=threads, progress=progress)
+    timings = {"build_s": built - start, "trace_s": time.perf_counter() - built}
+    image = Image(
+        xyz=outcome.xyz(),
+        xyz_standard_error=outcome.xyz_standard_error(),
+        spectral_radiance=outcome.spectral_radiance() if bands else None,
+        band_centres_nm=_band_centres(scene, bands),
+        samples=int(outcome.samples().min()),
+        samples_asked=scene.image.samples,
+        seed=scene.image.seed,
+        scene=scene,
+        method=method,
+        colour=colour,
+        statistics=outcome.statistics() | timings | {"geometry_bytes": world.memory_bytes},
+        elapsed_s=time.perf_counter() - start,
+        complete=not outcome.interrupted,
+        interrupted=outcome.interrupted,
+        version=_core.__version__,
+        command=f"lamplit.render(scene, method={method!r}, colour={colour!r})",
+    )
+    if image.interrupted:
+        raise RenderInterrupted(image)
+    return image
+
+
+def _trace(
+    scene: Scene,
+    world: _core.Scene,
+    *,
+    bands: int,
+    threads: int | None,
+    progress: ProgressCallback | None,
+) -> _core.Render:
+    image, hall = scene.image, scene.hall
+    try:
+        return world.render(
+            image.width,
+            image.height,
+            image.samples,
+            sampling=image.sampling,
+            filter=image.filter,
+            seed=image.seed,
+            max_depth=hall.max_depth,
+            contribution_limit=hall.contribution_limit,
+            dispersion_groups=hall.dispersion_groups,
+            shadows=hall.shadows,
+            bands_per_lane=bands,
+            threads=threads or 0,
+            progress=progress,
+        )
+    except ValueError as fault:
+        raise SceneError(str(fault), file=scene.path) from fault
+
+
+def _with_samples(scene: Scene, samples: int) -> Scene:
+    """Return ``scene`` with another number of samples, checked as the loader checks it."""
+    written = scene.image.model_dump() | {"samples": samples}
+    try:
+        return scene.changed(image=ImageSettings.model_validate(written))
+    except ValidationError as fault:
+        reason = fault.errors()[0]["msg"]
+        raise LamplitError(f"{samples} samples per pixel: {reason}") from fault
+
+
+def _band_centres(scene: Scene, bands_per_lane: int) -> Array:
+    low, high = scene.image.wavelength_range_nm
+    count = bands_per_lane * _core.LANES
+    return low + (high - low) * (np.arange(count) + 0.5) / max(count, 1)
