@@ -2,12 +2,17 @@
 //! Measures the triangle kernel on recorded rays.
 //!
 //! ```text
-//! ray_kernel record MESH RAYS COUNT   follows camera rays through the mesh as if it were glass, writes COUNT of them
-//! ray_kernel trace MESH RAYS          builds, then traces all rays on one thread: one JSON line now and one per line of stdin
+//! ray_kernel record MESH RAYS COUNT
+//! ray_kernel trace MESH RAYS [SLICE]
 //! ```
 //!
+//! `record` follows camera rays through the mesh as if it were glass, and writes COUNT of them.
+//! `trace` builds, then traces on one thread: all rays, or SLICE of them at a time, the next for each
+//! line of stdin. It prints one JSON line each time.
+//!
 //! MESH: u64 number of vertices, u64 number of triangles, vertices as 3 f64, triangles as 3 u32.
-//! RAYS: u64 number of rays, rays as 7 f64: origin, direction, `t_max` (for any hit). All little-endian.
+//! RAYS: u64 number of rays, rays as 7 f64: origin, direction, `t_max` (for any hit). All
+//! little-endian.
 
 use std::error::Error;
 use std::fs::{read, File};
@@ -19,6 +24,7 @@ use std::time::Instant;
 use glam::DVec3;
 use lamplit_core::geometry::{Kernel, Ray, TriangleHit, Triangles};
 
+type Mesh = (Vec<[f64; 3]>, Vec<[u32; 3]>);
 type Outcome<T> = Result<T, Box<dyn Error>>;
 
 fn main() -> Outcome<()> {
@@ -26,40 +32,40 @@ fn main() -> Outcome<()> {
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match arguments[..] {
         ["record", mesh, rays, count] => record(mesh.as_ref(), rays.as_ref(), count.parse()?),
-        ["trace", mesh, rays] => trace(mesh.as_ref(), rays.as_ref()),
-        _ => Err("usage: ray_kernel record MESH RAYS COUNT | ray_kernel trace MESH RAYS".into()),
+        ["trace", mesh, rays] => trace(mesh.as_ref(), rays.as_ref(), None),
+        ["trace", mesh, rays, slice] => trace(mesh.as_ref(), rays.as_ref(), Some(slice.parse()?)),
+        _ => Err(
+            "usage: ray_kernel record MESH RAYS COUNT | ray_kernel trace MESH RAYS [SLICE]".into(),
+        ),
     }
 }
 
-fn trace(mesh: &Path, rays: &Path) -> Outcome<()> {
+fn trace(mesh: &Path, rays: &Path, slice: Option<usize>) -> Outcome<()> {
     let (vertices, faces) = read_mesh(mesh)?;
     let rays = read_rays(rays)?;
     let begin = Instant::now();
     let mut triangles = Triangles::build(&vertices, &faces)?;
     let build_s = begin.elapsed().as_secs_f64();
     let bytes = triangles.memory_bytes() as f64 / faces.len() as f64;
-    loop {
+    for rays in rays.chunks(slice.unwrap_or(rays.len()).max(1)).cycle() {
         let mut kernels = Vec::new();
         for kernel in Kernel::available() {
             triangles = triangles.with_kernel(kernel)?;
-            let (closest, hits) = rate(&rays, |ray| {
-                triangles.closest_hit(&unlimited(ray)).is_some()
-            });
-            let (any, shadows) = rate(&rays, |ray| triangles.any_hit(ray));
-            kernels.push(format!(
-                r#""{kernel}":{{"closest_per_s":{closest:.0},"any_per_s":{any:.0},"hits":{hits},"shadows":{shadows}}}"#
-            ));
+            let closest = rate(rays, |ray| triangles.closest_hit(&unlimited(ray)).is_some());
+            let any = rate(rays, |ray| triangles.any_hit(ray));
+            kernels.push(format!(r#""{kernel}":{{"closest":{closest},"any":{any}}}"#));
         }
         println!(
-            r#"{{"triangles":{},"rays":{},"build_s":{build_s:.4},"bytes_per_triangle":{bytes:.1},"kernels":{{{}}}}}"#,
+            r#"{{"triangles":{},"rays":{},"build_s":{build_s:.4},"bytes_per_triangle":{bytes:.1},{}}}"#,
             faces.len(),
             rays.len(),
-            kernels.join(",")
+            format_args!(r#""kernels":{{{}}}"#, kernels.join(","))
         );
         if stdin().read_line(&mut String::new())? == 0 {
-            return Ok(());
+            break;
         }
     }
+    Ok(())
 }
 
 fn unlimited(ray: &Ray) -> Ray {
@@ -69,15 +75,17 @@ fn unlimited(ray: &Ray) -> Ray {
     }
 }
 
-/// Rays per second, and the number of rays for which `test` holds.
-fn rate(rays: &[Ray], test: impl Fn(&Ray) -> bool) -> (f64, usize) {
+/// Rays per second, and the number of rays for which `test` holds, as JSON.
+fn rate(rays: &[Ray], test: impl Fn(&Ray) -> bool) -> String {
     let begin = Instant::now();
-    let count = rays.iter().filter(|ray| black_box(test(ray))).count();
-    (rays.len() as f64 / begin.elapsed().as_secs_f64(), count)
+    let hits = rays.iter().filter(|ray| black_box(test(ray))).count();
+    let rate = rays.len() as f64 / begin.elapsed().as_secs_f64();
+    format!(r#"{{"rays_per_s":{rate:.0},"hits":{hits}}}"#)
 }
 
-/// Camera rays from in front of the mesh (+z), each followed through up to 12 surfaces of glass: reflected or refracted
-/// with the probability that Fresnel's equations give. For any hit, a ray ends at a random share of its way through the box.
+/// Camera rays from in front of the mesh (+z), each followed through up to 12 surfaces of glass:
+/// reflected or refracted with the probability that Fresnel's equations give. For any hit, a ray
+/// ends at a random share of its way through the box.
 fn record(mesh: &Path, rays: &Path, count: usize) -> Outcome<()> {
     let (vertices, faces) = read_mesh(mesh)?;
     let triangles = Triangles::build(&vertices, &faces)?;
@@ -128,8 +136,9 @@ fn record(mesh: &Path, rays: &Path, count: usize) -> Outcome<()> {
     Ok(())
 }
 
-/// The ray reflected or refracted at a surface of glass (n = 1.49) whose normal points out of it. It starts `gap` off the
-/// surface: far enough for a tracer that works in single precision alone, so that all peers see the same hits.
+/// The ray reflected or refracted at a surface of glass (n = 1.49) whose normal points out of it.
+/// It starts `gap` off the surface: far enough for a tracer that works in single precision alone,
+/// so that all peers see the same hits.
 fn follow(ray: &Ray, hit: &TriangleHit, choice: f64, gap: f64) -> Ray {
     let outside = ray.direction.dot(hit.normal) < 0.0;
     let (normal, eta) = if outside {
@@ -142,7 +151,7 @@ fn follow(ray: &Ray, hit: &TriangleHit, choice: f64, gap: f64) -> Ray {
     let cos_t = cos_t_squared.max(0.0).sqrt();
     let parallel = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
     let perpendicular = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
-    let reflectance = (parallel * parallel + perpendicular * perpendicular) / 2.0;
+    let reflectance = f64::midpoint(parallel * parallel, perpendicular * perpendicular);
     let reflected = cos_t_squared <= 0.0 || choice < reflectance;
     let direction = if reflected {
         ray.direction + 2.0 * cos_i * normal
@@ -168,7 +177,7 @@ impl Random {
     }
 }
 
-fn read_mesh(path: &Path) -> Outcome<(Vec<[f64; 3]>, Vec<[u32; 3]>)> {
+fn read_mesh(path: &Path) -> Outcome<Mesh> {
     let bytes = read(path)?;
     let mut words = bytes.chunks_exact(8);
     let [vertices, faces] =

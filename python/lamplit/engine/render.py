@@ -23,8 +23,9 @@ ProgressCallback = Callable[[int, int], object]
 
 METHODS = ("hall",)
 
-#: Bands of the spectral picture per lane: 80 bands of 5 nm over 380–780 nm.
-_BANDS_PER_LANE = 5
+#: Into how many bands a lane of the spectral picture is cut at most: over 380–780 nm and with 25
+#: samples or more these are 80 bands of 5 nm.
+_FINEST_BANDS = 5
 
 
 class RenderInterrupted(KeyboardInterrupt):
@@ -66,7 +67,8 @@ def render(
     carrier: Carrier = spectral
     if colour == "rgb":
         carrier = RgbCarrier(spectral, scene.resolve_source(scene.display.white))
-    bands = _BANDS_PER_LANE if spectral_bands and colour == "spectral" else 0
+    keeps_bands = spectral_bands and colour == "spectral"
+    bands = _bands_per_lane(scene.image.samples, spectral.phases) if keeps_bands else 0
     start = time.perf_counter()
     world = assemble(scene, carrier)
     built = time.perf_counter()
@@ -132,6 +134,13 @@ def _with_samples(scene: Scene, samples: int) -> Scene:
     except ValidationError as fault:
         reason = fault.errors()[0]["msg"]
         raise LamplitError(f"{samples} samples per pixel: {reason}") from fault
+
+
+def _bands_per_lane(samples: int, phases: int) -> int:
+    """Return the finest cut of a lane in which every band gets samples."""
+    if samples < phases:
+        return 1
+    return max(cut for cut in range(1, _FINEST_BANDS + 1) if phases % cut == 0)
 
 
 def _band_centres(scene: Scene, bands_per_lane: int) -> Array:

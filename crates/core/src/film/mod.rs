@@ -105,17 +105,26 @@ impl Film {
         self.bands_per_lane * LANES
     }
 
-    /// The mean spectral radiance of every band of every pixel; nothing where there is no sample.
+    /// The mean spectral radiance of every band of every pixel.
+    ///
+    /// In a film that was stopped early a band may have no sample yet: it takes the mean of its
+    /// lane, and nothing where the pixel has no sample at all.
     pub fn band_means(&self) -> Vec<f64> {
-        let bands = self.bands().max(1);
-        let per_lane = self.bands_per_lane.max(1);
-        self.band_sums
-            .iter()
+        if self.bands_per_lane == 0 {
+            return Vec::new();
+        }
+        let lanes = self.band_sums.chunks_exact(self.bands_per_lane);
+        lanes
             .enumerate()
-            .map(|(at, sum)| {
-                let (pixel, band) = (at / bands, at % bands);
-                let visits = self.band_visits[pixel * per_lane + band % per_lane];
-                sum / f64::from(visits.max(1))
+            .flat_map(|(at, sums)| {
+                let first = at / LANES * self.bands_per_lane;
+                let visits = &self.band_visits[first..first + self.bands_per_lane];
+                let all = f64::from(visits.iter().sum::<u32>().max(1));
+                let lane_mean = sums.iter().sum::<f64>() / all;
+                sums.iter().zip(visits).map(move |(sum, &visits)| match visits {
+                    0 => lane_mean,
+                    n => sum / f64::from(n),
+                })
             })
             .collect()
     }
@@ -153,5 +162,13 @@ mod tests {
         }
         let expected: Vec<f64> = (0..80).map(|band| f64::from(band * 5 + 2)).collect();
         assert_eq!(film.band_means(), expected);
+    }
+
+    #[test]
+    fn a_band_without_a_sample_takes_the_mean_of_its_lane() {
+        let mut film = Film::new(1, 1, 2);
+        let mut bands = BandSums { sums: &mut film.band_sums, visits: &mut film.band_visits };
+        bands.add(SampledSpectrum::splat(3.0), SampledWavelengths { phase: 0 }, 2);
+        assert_eq!(film.band_means(), vec![3.0; 2 * LANES]);
     }
 }

@@ -38,6 +38,10 @@ pub struct HallSettings {
     pub shadows: bool,
 }
 
+/// A highlight below this share of the contribution limit is left out. Lights can be far brighter
+/// than what rays bring, and a step in a highlight's tail would show where a missing ray does not.
+const LEAST_HIGHLIGHT: f64 = 0.01;
+
 /// One sample's tree of rays.
 pub struct HallWalk<'a> {
     scene: &'a Scene,
@@ -231,7 +235,8 @@ impl<'a> HallWalk<'a> {
             let cosine = side * way.direction.dot(meeting.normal);
             let faces = side * meeting.side() * way.direction.dot(meeting.hit.point.normal) > 0.0;
             let highlight = cosine.max(0.0).powf(terms.highlight_exponent);
-            if !faces || cosine <= 0.0 || weight.max() * highlight <= 0.0 {
+            let least = self.settings.contribution_limit * LEAST_HIGHLIGHT;
+            if !faces || weight.max() * highlight <= least {
                 continue;
             }
             let arriving = if self.settings.shadows {

@@ -9,8 +9,8 @@ use super::{MAX_DEPTH, WIDTH};
 /// Sets of at least this many triangles become tasks of their own.
 const TASK: usize = 1 << 12;
 
-/// From this depth on, sets are cut in halves of equal number. Seven halvings, each of the largest set, make eighths: then
-/// at most ten more levels bring 2²⁸ triangles down to blocks.
+/// From this depth on, sets are cut in halves of equal number. Seven halvings, each of the largest
+/// set, make eighths: then at most ten more levels bring 2²⁸ triangles down to blocks.
 const HALVING_DEPTH: usize = MAX_DEPTH - 14;
 
 /// A child of a node: its box and what is in it.
@@ -119,8 +119,8 @@ fn grow(set: Set, depth: usize) -> Subtree {
     }
 }
 
-/// Cuts until there are eight sets or each fits into a block: always the set with the largest surface, or when halving
-/// the one with the most triangles.
+/// Cuts until there are eight sets or each fits into a block: always the set with the largest
+/// surface, or when halving the one with the most triangles.
 fn cut_in_eight(set: Set, halve: bool) -> Vec<Set> {
     let mut sets = Vec::with_capacity(WIDTH);
     sets.push(set);

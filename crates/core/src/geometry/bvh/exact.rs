@@ -16,16 +16,18 @@ pub(super) struct Point {
 /// The point where the probe crosses the triangle, for t > 0; both sides of the triangle count.
 /// The corners' coordinates are in the order of the probe's axes.
 ///
-/// *Inside or outside* is Woop, Benthin and Wald's test (Watertight Ray/Triangle Intersection, JCGT 2(1), 2013).
-/// A corner is sheared to the same two coordinates whichever triangle it belongs to, and an edge function compares
-/// two rounded products, so its sign is never wrong: at worst it is zero, and zero counts as inside. Two triangles
-/// that share an edge leave no gap. (A fused multiply-add would break this: only one product would be rounded.)
+/// *Inside or outside* is Woop, Benthin and Wald's test (Watertight Ray/Triangle Intersection, JCGT
+/// 2(1), 2013). A corner is sheared to the same two coordinates whichever triangle it belongs to,
+/// and an edge function compares two rounded products, so its sign is never wrong: at worst it is
+/// zero, and zero counts as inside. Two triangles that share an edge leave no gap. (A fused
+/// multiply-add would break this: only one product would be rounded.)
 ///
-/// *Where* is the ray against the triangle's plane, t = n·a / n·d with a corner a seen from the origin, kept between
-/// the corners' own distances, so that an almost edge-on triangle is hit on itself. The sign of n·a says on which
-/// side the origin lies. If n·a is smaller than its rounding error the origin is on the triangle, and there is no hit.
-/// That error: each component of n = e₁ × e₂ is off by at most 4u(|e₁ᵢe₂ⱼ| + |e₁ⱼe₂ᵢ|) =: 4u mₖ (edges, products,
-/// difference; u = 2⁻⁵³), and the dot product adds at most 4u |nₖ||aₖ| per term: 8u Σ mₖ|aₖ| in all.
+/// *Where* is the ray against the triangle's plane, t = n·a / n·d with a corner a seen from the
+/// origin, kept between the corners' own distances, so that an almost edge-on triangle is hit on
+/// itself. The sign of n·a says on which side the origin lies. If n·a is smaller than its rounding
+/// error the origin is on the triangle, and there is no hit. That error: each component of n = e₁ ×
+/// e₂ is off by at most 4u(|e₁ᵢe₂ⱼ| + |e₁ⱼe₂ᵢ|) =: 4u mₖ (edges, products, difference; u = 2⁻⁵³),
+/// and the dot product adds at most 4u |nₖ||aₖ| per term: 8u Σ mₖ|aₖ| in all.
 #[inline(always)]
 pub(super) fn cross(probe: &Probe, corners: &[DVec3; 3]) -> Option<Point> {
     let seen = corners[0] - probe.origin;

@@ -3,8 +3,10 @@
 
 use std::fmt;
 
+use crate::geometry::ray::Ray;
+
 use super::lanes::Portable;
-use super::{traverse, Crossing, Segment, Tree};
+use super::{traverse, Tree, TriangleHit};
 
 /// An instruction set for which the traversal is compiled. All give the same hits, bit for bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,29 +64,30 @@ impl Kernel {
         }
     }
 
-    /// The nearest crossing. The kernel must be one that [`Tree`] has accepted.
-    #[inline]
-    pub(super) fn closest(self, tree: &Tree, segment: &Segment) -> Option<Crossing> {
+    /// The nearest hit. The kernel must be one that [`Tree`] has accepted.
+    #[inline(always)]
+    pub(super) fn closest(self, tree: &Tree, ray: &Ray) -> Option<TriangleHit> {
         match self {
-            // SAFETY: a tree accepts a kernel only if `is_available`, which tests for every feature that is enabled.
+            // SAFETY: a tree accepts a kernel only if `is_available`, which tests for every feature
+            // that is enabled.
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2 => unsafe { super::x86::closest_avx2(tree, segment) },
+            Self::Avx2 => unsafe { super::x86::closest_avx2(tree, ray) },
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512 => unsafe { super::x86::closest_avx512(tree, segment) },
-            _ => traverse::closest::<Portable>(tree, segment),
+            Self::Avx512 => unsafe { super::x86::closest_avx512(tree, ray) },
+            _ => traverse::closest::<Portable>(tree, ray),
         }
     }
 
     /// Is there a crossing? The kernel must be one that [`Tree`] has accepted.
-    #[inline]
-    pub(super) fn any(self, tree: &Tree, segment: &Segment) -> bool {
+    #[inline(always)]
+    pub(super) fn any(self, tree: &Tree, ray: &Ray) -> bool {
         match self {
             // SAFETY: as in `closest`.
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2 => unsafe { super::x86::any_avx2(tree, segment) },
+            Self::Avx2 => unsafe { super::x86::any_avx2(tree, ray) },
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512 => unsafe { super::x86::any_avx512(tree, segment) },
-            _ => traverse::any::<Portable>(tree, segment),
+            Self::Avx512 => unsafe { super::x86::any_avx512(tree, ray) },
+            _ => traverse::any::<Portable>(tree, ray),
         }
     }
 }

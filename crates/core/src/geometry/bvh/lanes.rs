@@ -5,7 +5,8 @@ use super::WIDTH;
 
 /// Eight `f32` lanes of one instruction set.
 ///
-/// Whether `mul_add` rounds once or twice is left to the set: every use is covered by an error bound.
+/// Whether `mul_add` rounds once or twice is left to the set: every use is covered by an error
+/// bound.
 pub(super) trait Lanes: Copy {
     fn splat(value: f32) -> Self;
     fn load(values: &[f32; WIDTH]) -> Self;

@@ -117,8 +117,8 @@ impl Source<'_> {
             block.triangles[lane] = triangle as u32;
             for corner in 0..3 {
                 let vertex = self.vertices[self.triangles[triangle][corner] as usize];
-                for axis in 0..3 {
-                    block.corners[corner][axis][lane] = vertex[axis];
+                for (axis, coordinate) in vertex.into_iter().enumerate() {
+                    block.corners[corner][axis][lane] = coordinate;
                 }
             }
         }
@@ -163,8 +163,8 @@ impl Node {
     }
 }
 
-/// The slots by the distance of their boxes' centres along the middle of an octant, whose bit k says that
-/// component k of the direction is negative. Unused slots come last.
+/// The slots by the distance of their boxes' centres along the middle of an octant, whose bit k
+/// says that component k of the direction is negative. Unused slots come last.
 fn near_to_far(boxes: &[Bounds], octant: usize) -> u32 {
     let sign = |axis: usize| if octant >> axis & 1 == 0 { 1.0 } else { -1.0 };
     let direction = Vec3::new(sign(0), sign(1), sign(2));

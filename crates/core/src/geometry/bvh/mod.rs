@@ -1,53 +1,69 @@
 // SPDX-License-Identifier: Apache-2.0 OR MIT
-//! An 8-wide bounding volume hierarchy over triangles: single precision finds, double precision decides.
+//! An 8-wide bounding volume hierarchy over triangles: single precision finds, double precision
+//! decides.
 //!
 //! Nodes and triangles are stored in single precision, eight to a row, and tested eight at a time.
-//! Both single-precision tests (box and triangle) are *conservative*: their rounding errors are bounded
-//! and added, so they may let a near miss through but never lose a hit. What they let through is decided
-//! in double precision, one triangle at a time, by a watertight test ([`exact`]). The hit therefore depends
-//! on neither the instruction set nor the order of traversal, and is as accurate as `f64` allows.
+//! Both single-precision tests (box and triangle) are *conservative*: their rounding errors are
+//! bounded and added, so they may let a near miss through but never lose a hit. What they let
+//! through is decided in double precision, one triangle at a time, by a watertight test
+//! ([`exact`]). The hit therefore depends on neither the instruction set nor the order of
+//! traversal, and is as accurate as `f64` allows.
 //!
-//! [`build`] makes the tree, [`layout`] writes it into arrays, [`probe`] prepares a ray, [`traverse`] walks
-//! the tree over the [`lanes`] of one instruction set, [`kernel`] chooses that set at run time.
+//! [`build`] makes the tree, [`layout`] writes it into arrays, [`probe`] prepares a ray,
+//! [`traverse`] walks the tree over the [`lanes`] of one instruction set, [`kernel`] chooses that
+//! set at run time.
+
+// What is not inlined into the entry points of an instruction set is compiled without it, at half
+// the speed.
+#![allow(clippy::inline_always)]
 
 use glam::{DVec3, Vec3};
 
+use super::ray::Ray;
+
 mod build;
 mod exact;
+mod hit;
 mod kernel;
 mod lanes;
 mod layout;
 mod probe;
 mod split;
+#[cfg(test)]
+mod tests;
 mod traverse;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
+pub use hit::TriangleHit;
 pub use kernel::Kernel;
 use probe::Probe;
-pub(super) use probe::Segment;
 
 /// Triangles per block, children per node: the lanes of one 256-bit register of `f32`.
 pub(super) const WIDTH: usize = 8;
 
-/// No tree is deeper than this (`build` turns to median splits in time), so a stack of fixed size suffices.
+/// No tree is deeper than this (`build` turns to median splits in time), so a stack of fixed size
+/// suffices.
 const MAX_DEPTH: usize = 36;
 
-/// Eight triangles, corner by corner and axis by axis, lane = triangle. Unused lanes repeat the first.
-#[derive(Clone)]
+/// Eight triangles, corner by corner and axis by axis, lane = triangle. Unused lanes repeat the
+/// first.
+#[derive(Clone, PartialEq)]
 #[repr(C, align(64))]
 struct Block {
-    /// `corners[corner][axis][lane]`, relative to the centre of the scene, in the unit of the scene.
+    /// `corners[corner][axis][lane]`, relative to the centre of the scene, in the unit of the
+    /// scene.
     corners: [[[f32; WIDTH]; 3]; 3],
     /// Index of each triangle in the caller's list.
     triangles: [u32; WIDTH],
 }
 
 /// A node: the boxes of up to eight children, smallest number of triangles first.
-#[derive(Clone)]
+#[derive(Clone, PartialEq)]
 #[repr(C, align(64))]
 struct Node {
-    /// `bounds[2 * axis]` holds the lower, `bounds[2 * axis + 1]` the upper sides; unused slots are empty boxes.
+    /// `bounds[2 * axis]` holds the lower, `bounds[2 * axis + 1]` the upper sides; unused slots are
+    /// empty boxes.
     bounds: [[f32; WIDTH]; 6],
     children: [Link; WIDTH],
     /// Per octant of directions, the slots from near to far, three bits each.
@@ -101,28 +117,18 @@ pub(super) struct Tree {
     nodes: Vec<Node>,
     blocks: Vec<Block>,
     root: Link,
-    /// The largest coordinate on each axis, without sign.
+    /// What vertices are relative to.
+    centre: DVec3,
+    /// The largest coordinate on each axis relative to the centre, without sign.
     half_extent: DVec3,
     /// One that this processor has.
     kernel: Kernel,
 }
 
-/// A triangle that a ray crosses.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Crossing {
-    /// Distance from the origin of the ray as given.
-    pub t: f64,
-    /// Weights of the corners: their sum is not one.
-    pub weights: [f64; 3],
-    /// Index in the caller's list.
-    pub triangle: u32,
-    slot: u32,
-}
-
 impl Tree {
-    /// Builds the tree of triangles whose corners are in `vertices`: relative to the centre, all finite,
-    /// at least one triangle and at most [`MAX_TRIANGLES`], every index within `vertices`.
-    pub fn build(vertices: &[[f32; 3]], triangles: &[[u32; 3]]) -> Self {
+    /// Builds the tree of triangles whose corners are in `vertices`, relative to `centre`: all
+    /// finite, at least one triangle and at most [`MAX_TRIANGLES`], every index within `vertices`.
+    pub fn build(centre: DVec3, vertices: &[[f32; 3]], triangles: &[[u32; 3]]) -> Self {
         let half_extent = triangles
             .iter()
             .flatten()
@@ -136,6 +142,7 @@ impl Tree {
             nodes,
             blocks,
             root,
+            centre,
             half_extent,
             kernel: Kernel::best(),
         }
@@ -153,25 +160,25 @@ impl Tree {
         kernel.is_available()
     }
 
-    /// The nearest triangle that the ray crosses; of several at the same distance, the one with the lowest index.
-    pub fn closest(&self, segment: &Segment) -> Option<Crossing> {
-        self.kernel.closest(self, segment)
+    /// The nearest triangle that the ray crosses; of several at the same distance, the one with the
+    /// lowest index.
+    #[inline(always)]
+    pub fn closest(&self, ray: &Ray) -> Option<TriangleHit> {
+        self.kernel.closest(self, ray)
     }
 
     /// Does the ray cross any triangle?
-    pub fn any(&self, segment: &Segment) -> bool {
-        self.kernel.any(self, segment)
+    #[inline(always)]
+    pub fn any(&self, ray: &Ray) -> bool {
+        self.kernel.any(self, ray)
     }
 
-    /// Corners of the triangle that was crossed, relative to the centre.
-    pub fn corners(&self, crossing: &Crossing) -> [DVec3; 3] {
-        let slot = crossing.slot as usize;
-        self.blocks[slot / WIDTH].corners(slot % WIDTH, [0, 1, 2])
-    }
-
-    /// The largest coordinate on each axis, without sign.
-    pub fn half_extent(&self) -> DVec3 {
-        self.half_extent
+    /// The lower and the upper corner of the box around all triangles.
+    pub fn bounds(&self) -> [DVec3; 2] {
+        [
+            self.centre - self.half_extent,
+            self.centre + self.half_extent,
+        ]
     }
 
     /// Bytes of nodes and blocks.

@@ -3,37 +3,33 @@
 
 use glam::{DVec3, Vec3A};
 
+use crate::geometry::ray::Ray;
+
 /// Half the spacing of `f32` at one: the relative error of one rounding.
 const U: f32 = f32::EPSILON / 2.0;
 
-/// The box of the scene, grown by this share of its size, clips rays. So the start of a clipped ray is clearly
-/// outside of all triangles, also of those in a face of the box.
+/// The box of the scene, grown by this share of its size, clips rays. So the start of a clipped ray
+/// is clearly outside of all triangles, also of those in a face of the box.
 const CLIP_MARGIN: f64 = 1.0 / 1024.0;
 
-/// A ray relative to the centre of the scene: the points `origin + t direction`, 0 < t < `t_max`.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::geometry) struct Segment {
-    pub origin: DVec3,
-    /// A unit vector.
-    pub direction: DVec3,
-    pub t_max: f64,
-}
-
-/// A ray clipped to the scene's box, with what both precisions need.
+/// A ray relative to the centre of the scene, clipped to the scene's box, with what both precisions
+/// need.
 ///
 /// # Rounding in single precision
 ///
-/// Let R be the half extent of the clip box (largest axis): |o| ≤ R, corners and boxes within R, u = 2⁻²⁴.
+/// Let R be the half extent of the clip box (largest axis): |o| ≤ R, corners and boxes within R, u
+/// = 2⁻²⁴.
 ///
-/// **Box.** The side b of a box lies at t = (b − o)/d, computed as b·inv + fl(−o·inv). Relative errors, from d, 1/d, and the last
-/// rounding, are ≤ 4u, and |t| ≤ 2R|inv| within the box: 8uR|inv|. Rounding o and o·inv adds 2uR|inv|. Twelve of these instead
-/// of ten are taken into the added constant: `near_offset`, `far_offset`.
-/// A component of d below 10⁻¹⁸ is replaced by 10⁻¹⁸, which moves no point of the ray within the box by uR.
+/// **Box.** The side b of a box lies at t = (b − o)/d, computed as b·inv + fl(−o·inv). Relative
+/// errors, from d, 1/d, and the last rounding, are ≤ 4u, and |t| ≤ 2R|inv| within the box:
+/// 8uR|inv|. Rounding o and o·inv adds 2uR|inv|. Twelve of these instead of ten are taken into the
+/// added constant: `near_offset`, `far_offset`. A component of d below 10⁻¹⁸ is replaced by 10⁻¹⁸,
+/// which moves no point of the ray within the box by uR.
 ///
-/// **Triangle.** A sheared coordinate x' = p.x − s·p.z of p = v − o carries 3uR from each of p.x and p.z (origin, difference),
-/// 2uR from s, 6uR from product and difference: m = 16uR bounds it. With M the largest sheared coordinate of the triangle,
-/// an edge function is off by ≤ 4mM + 2m² + 4uM² ≤ 5m(M + m), as M ≤ 4R. The edge functions may have the
-/// wrong sign by that much.
+/// **Triangle.** A sheared coordinate x' = p.x − s·p.z of p = v − o carries 3uR from each of p.x
+/// and p.z (origin, difference), 2uR from s, 6uR from product and difference: m = 16uR bounds it.
+/// With M the largest sheared coordinate of the triangle, an edge function is off by ≤ 4mM + 2m² +
+/// 4uM² ≤ 5m(M + m), as M ≤ 4R. The edge functions may have the wrong sign by that much.
 #[derive(Debug)]
 pub(super) struct Probe {
     /// Where the probe starts on the ray given: its t is less by this much than the ray's.
@@ -59,27 +55,22 @@ pub(super) struct SinglePrecision {
     pub(super) far_offset: [f32; 3],
     /// What to add to x and y per z.
     pub(super) shear: [f32; 2],
-    /// Edge functions may be wrong by `edge_slope` times the largest coordinate plus `edge_constant`.
+    /// Edge functions may be wrong by `edge_slope` times the largest coordinate plus
+    /// `edge_constant`.
     pub(super) edge_slope: f32,
     pub(super) edge_constant: f32,
 }
 
 impl Probe {
-    /// Prepares the ray for a scene within ± `half_extent` on each axis. `None` if it passes the scene or is not a ray
-    /// (not finite, no direction).
+    /// Prepares a ray for a scene within ± `half_extent` of `centre` on each axis. `None` if it
+    /// passes the scene or is not a ray (not finite, no direction).
     #[inline(always)]
-    pub fn new(segment: &Segment, half_extent: DVec3) -> Option<Self> {
-        let Segment {
-            origin,
-            direction,
-            t_max,
-        } = *segment;
+    pub fn new(ray: &Ray, centre: DVec3, half_extent: DVec3) -> Option<Self> {
+        let (origin, direction, t_max) = (ray.origin - centre, ray.direction, ray.t_max);
         let radius = half_extent.max_element();
         let clip_box = half_extent + DVec3::splat(radius * CLIP_MARGIN);
         let start = clip(origin, direction, clip_box)?;
-        if !(start < t_max) {
-            return None;
-        }
+        (start < t_max).then_some(())?;
         let origin = origin + start * direction;
         let size = direction.abs();
         let axes = if size.z >= size.x && size.z >= size.y {
@@ -132,7 +123,8 @@ impl SinglePrecision {
     }
 }
 
-/// The distance along the ray to the box of ± `half_extent`: 0 inside of it, `None` if the ray does not meet it.
+/// The distance along the ray to the box of ± `half_extent`: 0 inside of it, `None` if the ray does
+/// not meet it.
 #[inline(always)]
 fn clip(origin: DVec3, direction: DVec3, half_extent: DVec3) -> Option<f64> {
     if origin.abs().cmple(half_extent).all() {

@@ -11,7 +11,8 @@ const BINS: usize = 16;
 /// Sets of at least this many triangles are binned by all threads.
 const PARALLEL: usize = 1 << 16;
 
-/// A box; the fourth components mean nothing. Minimum and maximum are exact, so no order of growing changes it.
+/// A box; the fourth components mean nothing. Minimum and maximum are exact, so no order of growing
+/// changes it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds {
     pub lo: Vec4,
@@ -88,9 +89,7 @@ impl Extent {
     };
 
     pub fn of(references: &[Reference]) -> Self {
-        references
-            .iter()
-            .fold(Self::EMPTY, |extent, reference| extent.with(reference))
+        references.iter().fold(Self::EMPTY, Self::with)
     }
 
     #[inline(always)]
@@ -116,7 +115,8 @@ impl Grid {
         let size = centroids.hi - centroids.lo;
         Self {
             origin: centroids.lo,
-            // A little less than `bins`, so that the upper end falls into the last bin; an axis without size has one bin.
+            // A little less than `bins`, so that the upper end falls into the last bin; an axis
+            // without size has one bin.
             scale: Vec4::select(
                 size.cmpgt(Vec4::ZERO),
                 bins as f32 * 0.999_99 / size,
@@ -180,7 +180,8 @@ struct Cut {
     bin: usize,
 }
 
-/// Area times number of blocks, summed over both sides, is least; `None` if all centroids share one bin.
+/// Area times number of blocks, summed over both sides, is least; `None` if all centroids share one
+/// bin.
 fn cheapest_cut(histogram: &Histogram, bins: usize) -> Option<Cut> {
     let cost = |bounds: Bounds, count: usize| bounds.half_area() * count.div_ceil(WIDTH) as f32;
     let mut cheapest = (f32::INFINITY, None);
@@ -209,8 +210,9 @@ fn cheapest_cut(histogram: &Histogram, bins: usize) -> Option<Cut> {
     cheapest.1
 }
 
-/// Cuts the set in two where the surface area heuristic is least and moves the triangles accordingly: returns the length
-/// of the first part and both extents. Neither part is empty. The set must hold at least two triangles.
+/// Cuts the set in two where the surface area heuristic is least and moves the triangles
+/// accordingly: returns the length of the first part and both extents. Neither part is empty. The
+/// set must hold at least two triangles.
 pub(super) fn by_area(references: &mut [Reference], extent: &Extent) -> (usize, [Extent; 2]) {
     let grid = Grid::new(extent.centroids, references.len());
     let histogram = if references.len() >= PARALLEL {
@@ -236,7 +238,8 @@ pub(super) fn by_area(references: &mut [Reference], extent: &Extent) -> (usize, 
     (first, extents)
 }
 
-/// Cuts the set in two halves of equal number along the longest axis of the centroids. What `by_area` falls back to.
+/// Cuts the set in two halves of equal number along the longest axis of the centroids. What
+/// `by_area` falls back to.
 pub(super) fn in_half(references: &mut [Reference], extent: &Extent) -> (usize, [Extent; 2]) {
     let size = extent.centroids.hi - extent.centroids.lo;
     let axis = size.truncate().max_position();

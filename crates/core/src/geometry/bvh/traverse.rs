@@ -3,8 +3,39 @@
 
 use std::mem::MaybeUninit;
 
+use glam::DVec3;
+
+use crate::geometry::ray::Ray;
+
 use super::lanes::Lanes;
-use super::{exact, Block, Crossing, Link, Node, Probe, Segment, Tree, MAX_DEPTH, WIDTH};
+use super::{exact, Block, Link, Node, Probe, Tree, TriangleHit, MAX_DEPTH, WIDTH};
+
+/// A triangle that the ray crosses.
+struct Crossing {
+    /// Distance from the origin of the ray.
+    t: f64,
+    /// Index in the caller's list.
+    triangle: u32,
+    block: u32,
+    lane: u32,
+    /// Weights of the corners: their sum is not one.
+    weights: [f64; 3],
+}
+
+impl Crossing {
+    #[inline(always)]
+    fn hit(&self, tree: &Tree, direction: DVec3) -> TriangleHit {
+        let corners = tree.blocks[self.block as usize].corners(self.lane as usize, [0, 1, 2]);
+        let place = (tree.centre, tree.half_extent);
+        TriangleHit::new(
+            (self.t, self.triangle),
+            direction,
+            corners,
+            self.weights,
+            place,
+        )
+    }
+}
 
 /// A child yet to be visited, and where the ray enters its box.
 #[derive(Clone, Copy)]
@@ -15,13 +46,14 @@ struct Pending {
 
 /// Children yet to be visited: at each level at most all but the one being visited.
 ///
-/// Left uninitialised, because to clear it for each ray would cost as much as to visit some ten nodes.
+/// Left uninitialised, because to clear it for each ray would cost as much as to visit some ten
+/// nodes.
 type Stack = [MaybeUninit<Pending>; (WIDTH - 1) * MAX_DEPTH + 1];
 
 /// The single-precision part of a probe, spread over lanes.
 ///
-/// Whatever computes with lanes is a function marked `inline(always)`, never a closure: what is not inlined into the
-/// entry points is compiled without their instruction set, and halved the speed.
+/// Whatever computes with lanes is a function marked `inline(always)`, never a closure: what is not
+/// inlined into the entry points is compiled without their instruction set, and halved the speed.
 struct Spread<L> {
     near_sides: [usize; 3],
     inverse_direction: [L; 3],
@@ -134,24 +166,24 @@ impl<L: Lanes> Spread<L> {
 
 /// The nearest crossing; of several at the same distance, the one with the lowest triangle.
 #[inline(always)]
-pub(super) fn closest<L: Lanes>(tree: &Tree, segment: &Segment) -> Option<Crossing> {
-    let probe = &Probe::new(segment, tree.half_extent)?;
-    let ray = Spread::<L>::new(probe);
-    let octant = ray.octant();
-    let mut best = None;
+pub(super) fn closest<L: Lanes>(tree: &Tree, ray: &Ray) -> Option<TriangleHit> {
+    let probe = &Probe::new(ray, tree.centre, tree.half_extent)?;
+    let lanes = Spread::<L>::new(probe);
+    let octant = lanes.octant();
+    let mut best: Option<Crossing> = None;
     let mut limit = probe.limit(probe.t_max);
     let mut stack: Stack = [const { MaybeUninit::uninit() }; _];
     let mut height = 0;
     let mut link = tree.root;
     loop {
         if link.is_leaf() {
-            if let Some(crossing) = nearest_in_block(tree, link, probe, &ray, best.as_ref()) {
+            if let Some(crossing) = nearest_in_block(tree, link, probe, &lanes, best.as_ref()) {
                 limit = probe.limit(crossing.t);
                 best = Some(crossing);
             }
         } else {
             let node = &tree.nodes[link.node_index()];
-            let (enter, leave) = ray.boxes(node, L::splat(limit));
+            let (enter, leave) = lanes.boxes(node, L::splat(limit));
             let hits = enter.at_most(leave);
             // Five of six visits that hit anything hit one child.
             if hits & hits.wrapping_sub(1) == 0 && hits != 0 {
@@ -163,11 +195,12 @@ pub(super) fn closest<L: Lanes>(tree: &Tree, segment: &Segment) -> Option<Crossi
                 let slot = |position: u32| (order >> (3 * position) & 7) as usize;
                 let mut hits = enter.at_most_in_order(leave, order);
                 let enter = enter.store();
-                // The nearest is visited now, the others are stacked with the farthest at the bottom.
+                // The nearest is visited now, the others are stacked with the farthest at the
+                // bottom.
                 let first = hits.trailing_zeros();
                 hits &= hits - 1;
                 while hits != 0 {
-                    let last = 31 - hits.leading_zeros();
+                    let last = hits.ilog2();
                     hits ^= 1 << last;
                     stack[height].write(Pending {
                         link: node.children[slot(last)],
@@ -181,7 +214,7 @@ pub(super) fn closest<L: Lanes>(tree: &Tree, segment: &Segment) -> Option<Crossi
         }
         loop {
             if height == 0 {
-                return best;
+                return best.map(|crossing| crossing.hit(tree, ray.direction));
             }
             height -= 1;
             // SAFETY: all entries below the former `height` have been written.
@@ -194,31 +227,32 @@ pub(super) fn closest<L: Lanes>(tree: &Tree, segment: &Segment) -> Option<Crossi
     }
 }
 
-/// Is there a crossing? The child with the fewest triangles is searched first, because it is the cheapest to search.
+/// Is there a crossing? The child with the fewest triangles is searched first, because it is the
+/// cheapest to search.
 #[inline(always)]
-pub(super) fn any<L: Lanes>(tree: &Tree, segment: &Segment) -> bool {
-    let Some(probe) = &Probe::new(segment, tree.half_extent) else {
+pub(super) fn any<L: Lanes>(tree: &Tree, ray: &Ray) -> bool {
+    let Some(probe) = &Probe::new(ray, tree.centre, tree.half_extent) else {
         return false;
     };
-    let ray = Spread::<L>::new(probe);
+    let lanes = Spread::<L>::new(probe);
     let limit = L::splat(probe.limit(probe.t_max));
     let mut stack: Stack = [const { MaybeUninit::uninit() }; _];
     let mut height = 0;
     let mut link = tree.root;
     loop {
         if link.is_leaf() {
-            if nearest_in_block(tree, link, probe, &ray, None).is_some() {
+            if nearest_in_block(tree, link, probe, &lanes, None).is_some() {
                 return true;
             }
         } else {
             let node = &tree.nodes[link.node_index()];
-            let (enter, leave) = ray.boxes(node, limit);
+            let (enter, leave) = lanes.boxes(node, limit);
             let mut hits = enter.at_most(leave);
             if hits != 0 {
                 let first = hits.trailing_zeros() as usize % WIDTH;
                 hits &= hits - 1;
                 while hits != 0 {
-                    let last = 31 - hits.leading_zeros();
+                    let last = hits.ilog2();
                     hits ^= 1 << last;
                     stack[height].write(Pending {
                         link: node.children[last as usize % WIDTH],
@@ -245,11 +279,11 @@ fn nearest_in_block<L: Lanes>(
     tree: &Tree,
     link: Link,
     probe: &Probe,
-    ray: &Spread<L>,
+    lanes: &Spread<L>,
     best: Option<&Crossing>,
 ) -> Option<Crossing> {
     let block = &tree.blocks[link.block_index()];
-    let mut candidates = ray.candidates(block) & link.lane_mask();
+    let mut candidates = lanes.candidates(block) & link.lane_mask();
     let mut nearest = None;
     while candidates != 0 {
         let lane = candidates.trailing_zeros() as usize;
@@ -261,7 +295,8 @@ fn nearest_in_block<L: Lanes>(
             t: probe.start + point.t,
             weights: point.weights,
             triangle: block.triangles[lane % WIDTH],
-            slot: (link.block_index() * WIDTH + lane) as u32,
+            block: link.block_index() as u32,
+            lane: lane as u32,
         };
         let nearer = match nearest.as_ref().or(best) {
             Some(best) => (crossing.t, crossing.triangle) < (best.t, best.triangle),

@@ -3,9 +3,10 @@
 //!
 //! # Safety
 //!
-//! An intrinsic may run only on a processor that has its instruction set. Every method here is inlined into
-//! one of the entry points at the end of this file, which enable the instruction set. Those are called by
-//! [`Kernel`](super::Kernel) alone, on behalf of a [`Tree`], which accepts a kernel only if the processor has it.
+//! An intrinsic may run only on a processor that has its instruction set. Every method here is
+//! inlined into one of the entry points at the end of this file, which enable the instruction set.
+//! Those are called by [`Kernel`](super::Kernel) alone, on behalf of a [`Tree`], which accepts a
+//! kernel only if the processor has it.
 
 use std::arch::x86_64::{
     __m256, _mm256_and_ps, _mm256_castps_si256, _mm256_castsi256_ps, _mm256_cmp_ps,
@@ -15,8 +16,10 @@ use std::arch::x86_64::{
     _mm256_srlv_epi32, _mm256_storeu_ps, _mm256_sub_ps, _CMP_LE_OQ,
 };
 
+use crate::geometry::ray::Ray;
+
 use super::lanes::Lanes;
-use super::{traverse, Crossing, Segment, Tree, WIDTH};
+use super::{traverse, Tree, TriangleHit, WIDTH};
 
 /// What the two instruction sets share; they differ in how they compare.
 macro_rules! lanes_of_256_bits {
@@ -28,7 +31,8 @@ macro_rules! lanes_of_256_bits {
         #[derive(Clone, Copy)]
         struct $name(__m256);
 
-        // SAFETY of every block: see the head of this file; loads and stores are of eight `f32`, unaligned.
+        // SAFETY of every block: see the head of this file; loads and stores are of eight `f32`,
+        // unaligned.
         impl Lanes for $name {
             #[inline(always)]
             fn splat(value: f32) -> Self {
@@ -133,8 +137,8 @@ macro_rules! entry_points {
         /// # Safety
         /// The processor must have the features that are enabled here.
         #[target_feature(enable = $features)]
-        pub(super) unsafe fn $closest(tree: &Tree, segment: &Segment) -> Option<Crossing> {
-            traverse::closest::<$lanes>(tree, segment)
+        pub(super) unsafe fn $closest(tree: &Tree, ray: &Ray) -> Option<TriangleHit> {
+            traverse::closest::<$lanes>(tree, ray)
         }
 
         /// Is there a crossing?
@@ -142,8 +146,8 @@ macro_rules! entry_points {
         /// # Safety
         /// The processor must have the features that are enabled here.
         #[target_feature(enable = $features)]
-        pub(super) unsafe fn $any(tree: &Tree, segment: &Segment) -> bool {
-            traverse::any::<$lanes>(tree, segment)
+        pub(super) unsafe fn $any(tree: &Tree, ray: &Ray) -> bool {
+            traverse::any::<$lanes>(tree, ray)
         }
     };
 }

@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: Apache-2.0 OR MIT
+"""``lamplit compare``: one scene in RGB and in spectra, and how far they are apart."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from lamplit.cli.options import (
+    DisplayOption,
+    Method,
+    MethodOption,
+    OutputOption,
+    SamplesOption,
+    SceneArgument,
+    SeedOption,
+    SetOption,
+    SizeOption,
+    ThreadsOption,
+)
+from lamplit.cli.overrides import command_line, overrides, scene_file
+from lamplit.cli.stopping import stop_signals
+from lamplit.errors import LamplitError
+
+if TYPE_CHECKING:
+    from lamplit.engine.image import Image
+    from lamplit.report.difference import Difference
+
+
+def compare(
+    scene: SceneArgument,
+    output: OutputOption,
+    method: MethodOption = Method.hall,
+    samples: SamplesOption = None,
+    seed: SeedOption = None,
+    size: SizeOption = None,
+    threads: ThreadsOption = None,
+    set_: SetOption = None,
+    display: DisplayOption = None,
+    mark: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--mark",
+            metavar="X,Y",
+            help="A pixel to look at, from the top left; may be repeated, five fit the page. "
+            "Without it, the places that differ most.",
+        ),
+    ] = None,
+) -> None:
+    """Render SCENE in RGB and in spectra, and lay the two side by side on one page.
+
+    Ctrl-C keeps what is done of the picture that is being made.
+    """
+    from lamplit import engine
+    from lamplit.report.atomic import prepare_output
+    from lamplit.report.comparison import COMPARISON_FILES, write_comparison
+    from lamplit.report.develop import check_display
+    from lamplit.report.difference import check_marks
+    from lamplit.report.progress import Progress
+    from lamplit.scene import load_scene
+
+    changed = overrides(
+        assignments=set_ or (), samples=samples, seed=seed, size=size, display=display
+    )
+    marks = None if mark is None else _places(mark)
+    loaded = load_scene(scene_file(scene), overrides=changed)
+    check_display(loaded)
+    check_marks(marks or (), width=loaded.image.width, height=loaded.image.height)
+    prepare_output(output, COMPARISON_FILES)
+    with stop_signals() as stop, Progress("Comparing") as progress:
+        try:
+            pair = engine.compare(loaded, method=method.value, threads=threads, progress=progress)
+        except engine.RenderInterrupted as stopped:
+            stop.end_if_empty(stopped.image)
+            _keep(output, stopped.image)
+            raise typer.Exit(stop.exit_code) from None
+    command = command_line(sys.argv)
+    spectral, rgb = (replace(image, command=command) for image in (pair.spectral, pair.rgb))
+    difference = write_comparison(spectral, rgb, output, marks=marks)
+    _tell(output, spectral, difference)
+
+
+def _keep(output: Path, image: Image) -> None:
+    """Write the picture that was being made when the comparison was stopped."""
+    from lamplit.cli.closing import show_results
+    from lamplit.report.comparison import COMPARISON_FILES, write_half
+
+    names = write_half(replace(image, command=command_line(sys.argv)), output)
+    show_results(image, {}, output, {name: COMPARISON_FILES[name] for name in names})
+
+
+def _places(marks: Sequence[str]) -> list[tuple[int, int]]:
+    places: list[tuple[int, int]] = []
+    for text in marks:
+        match = re.fullmatch(r"\s*(\d{1,6})\s*,\s*(\d{1,6})\s*", text)
+        if match is None:
+            raise LamplitError(
+                f"{text!r} is no pixel; write column,row, such as 320,200", where="--mark"
+            )
+        places.append((int(match[1]), int(match[2])))
+    return places
+
+
+def _tell(output: Path, image: Image, difference: Difference) -> None:
+    from lamplit.cli.closing import show_results
+    from lamplit.report.comparison import COMPARISON_FILES
+
+    shares = [100 * view.picture.gamut_share for view in (difference.rgb, difference.spectral)]
+    rows = {
+        "ΔE00, mean": f"{difference.mean:.2f}",
+        "ΔE00, 95 % of the pixels below": f"{difference.percentile_95:.2f}",
+        "ΔE00, largest": f"{difference.largest:.2f}",
+        f"outside {difference.spectral.display_label}": (
+            f"RGB {shares[0]:.1f} %, spectral {shares[1]:.1f} % of the pixels"
+        ),
+    }
+    show_results(image, rows, output, COMPARISON_FILES)

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: Apache-2.0 OR MIT
+"""The options that several commands share."""
+
+from __future__ import annotations
+
+from enum import Enum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+class Method(str, Enum):
+    """The transports there are."""
+
+    hall = "hall"
+
+
+class DisplayName(str, Enum):
+    """The displays known by name."""
+
+    srgb = "srgb"
+    display_p3 = "display-p3"
+    rec2020 = "rec2020"
+
+
+class Bits(str, Enum):
+    """Bits per channel of a PNG."""
+
+    eight = "8"
+    sixteen = "16"
+
+
+SceneArgument = Annotated[
+    Path, typer.Argument(metavar="SCENE", help="The scene's TOML file, or the folder it lies in.")
+]
+OutputOption = Annotated[
+    Path, typer.Option("-o", "--output", metavar="DIR", help="Where the results go.")
+]
+MethodOption = Annotated[Method, typer.Option("--method", help="Transport.")]
+SamplesOption = Annotated[
+    int | None, typer.Option("--samples", min=1, help="Samples per pixel, instead of the scene's.")
+]
+SeedOption = Annotated[
+    int | None, typer.Option("--seed", min=0, help="Seed, instead of the scene's.")
+]
+SizeOption = Annotated[
+    str | None,
+    typer.Option("--size", metavar="WxH", help="Pixels, such as 640x400, instead of the scene's."),
+]
+ThreadsOption = Annotated[
+    int | None,
+    typer.Option("--threads", min=1, help="Threads; the picture does not depend on them."),
+]
+SetOption = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Any value of the scene; may be repeated."),
+]
+DisplayOption = Annotated[
+    DisplayName | None, typer.Option("--display", help="Display, instead of the scene's.")
+]
+BitsOption = Annotated[Bits, typer.Option("--bits", help="Bits per channel of the PNG.")]

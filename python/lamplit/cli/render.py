@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: Apache-2.0 OR MIT
+"""``lamplit render``: the picture of a scene, in files that say how they came about."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from lamplit.cli.options import (
+    Bits,
+    BitsOption,
+    DisplayOption,
+    Method,
+    MethodOption,
+    OutputOption,
+    SamplesOption,
+    SceneArgument,
+    SeedOption,
+    SetOption,
+    SizeOption,
+    ThreadsOption,
+)
+from lamplit.cli.overrides import command_line, overrides, scene_file
+from lamplit.cli.stopping import stop_signals
+
+if TYPE_CHECKING:
+    from lamplit.engine.image import Image
+    from lamplit.report.develop import Developed
+
+#: What lies in each file of the results.
+_CONTENTS = {
+    "picture.png": "the picture, tagged for the display",
+    "picture.exr": "XYZ in cd/m² with standard errors, linear RGB, spectra if asked for",
+    "summary.json": "luminance, chromaticity, gamut, how to make it again",
+    "gamut-mask.png": "cyan: colours that the display cannot show",
+}
+
+
+def render(
+    scene: SceneArgument,
+    output: OutputOption,
+    method: MethodOption = Method.hall,
+    samples: SamplesOption = None,
+    seed: SeedOption = None,
+    size: SizeOption = None,
+    threads: ThreadsOption = None,
+    set_: SetOption = None,
+    display: DisplayOption = None,
+    bits: BitsOption = Bits.eight,
+    spectral: Annotated[
+        bool, typer.Option("--spectral", help="Keep the spectrum of each pixel in the EXR.")
+    ] = False,
+    gamut_mask: Annotated[
+        bool, typer.Option("--gamut-mask", help="Also draw which pixels the display cannot show.")
+    ] = False,
+) -> None:
+    """Render SCENE: picture.png for the display, picture.exr with exact values, summary.json.
+
+    Ctrl-C keeps the samples that are done.
+    """
+    from lamplit import engine
+    from lamplit.report.atomic import prepare_output
+    from lamplit.report.develop import check_display, develop
+    from lamplit.report.progress import Progress
+    from lamplit.report.summary import summary
+    from lamplit.scene import load_scene
+
+    changed = overrides(
+        assignments=set_ or (), samples=samples, seed=seed, size=size, display=display
+    )
+    loaded = load_scene(scene_file(scene), overrides=changed)
+    check_display(loaded)
+    names = [name for name in _CONTENTS if gamut_mask or name != "gamut-mask.png"]
+    prepare_output(output, names)
+    with stop_signals() as stop, Progress("Rendering") as progress:
+        try:
+            image = engine.render(
+                loaded,
+                method=method.value,
+                threads=threads,
+                spectral_bands=spectral,
+                progress=progress,
+            )
+        except engine.RenderInterrupted as stopped:
+            image = stopped.image
+    stop.end_if_empty(image)
+    image = replace(image, command=command_line(sys.argv))
+    developed = develop(image)
+    numbers = summary(image, developed)
+    _write(output, image, developed, numbers, bits=bits, spectral=spectral, mask=gamut_mask)
+    _tell(output, image, numbers, names)
+    stop.end_if_interrupted(image)
+
+
+def _write(
+    output: Path,
+    image: Image,
+    developed: Developed,
+    numbers: dict[str, Any],
+    *,
+    bits: Bits,
+    spectral: bool,
+    mask: bool,
+) -> None:
+    from lamplit.report.atomic import write_json
+    from lamplit.report.exr import write_exr
+    from lamplit.report.gamut_mask import gamut_mask_picture
+    from lamplit.report.png import write_png
+    from lamplit.report.provenance import text_provenance
+
+    picture, display, texts = (developed.picture, developed.display, text_provenance(image))
+    depth = 16 if bits is Bits.sixteen else 8
+    write_png(output / "picture.png", picture.encoded, display, bits=depth, provenance=texts)
+    write_exr(output / "picture.exr", image, developed, spectral=spectral)
+    write_json(output / "summary.json", numbers)
+    if mask:
+        masked = gamut_mask_picture(picture)
+        write_png(output / "gamut-mask.png", masked, display, provenance=texts)
+
+
+def _tell(output: Path, image: Image, numbers: dict[str, Any], names: list[str]) -> None:
+    from lamplit.cli.closing import show_results
+
+    luminance, display = numbers["luminance_cd_m2"], numbers["display"]
+    xy, shares = numbers["chromaticity_xy_of_mean"], luminance["percentiles"]
+    spread = " | ".join(f"{shares[share]:.4g}" for share in ("5", "50", "95") if share in shares)
+    mean, error = luminance["mean"], luminance["mean_standard_error"]
+    rows = {
+        "luminance, mean": f"{mean:.4g} ± {error:.2g} cd/m²",
+        "luminance, 5 | 50 | 95 %": f"{spread} cd/m²",
+        "chromaticity of the mean": "none: black" if xy is None else f"{xy[0]:.4f}, {xy[1]:.4f}",
+        f"outside {display['label']}": f"{100 * display['out_of_gamut_share']:.1f} % of the pixels",
+        "brighter than white": f"{100 * display['over_white_share']:.1f} % of the pixels",
+    }
+    show_results(image, rows, output, {name: _CONTENTS[name] for name in names})

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: Apache-2.0 OR MIT
+"""``lamplit sources``: the light sources of the library."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from lamplit.errors import LamplitError
+
+
+def sources(
+    name: Annotated[
+        str | None, typer.Argument(help="A source; without one, all are listed.")
+    ] = None,
+    plot: Annotated[
+        Path | None, typer.Option("--plot", help="Draw the source's spectrum into this file.")
+    ] = None,
+) -> None:
+    """Light sources by name, with their colour, references and licence."""
+    from rich.console import Console
+
+    from lamplit.sources import source, source_names
+
+    if name is None and plot is not None:
+        raise LamplitError("--plot draws one source; name it: lamplit sources NAME --plot FILE")
+    console = Console()
+    if name is None:
+        console.print(_overview(source_names()))
+        console.print(
+            "x, y: CIE 1931 2°, 360-830 nm.  λd: dominant wavelength against equal-energy white.\n"
+            "lm/W: luminous efficacy of radiation.  lamplit sources NAME tells more of one."
+        )
+        return
+    entry = source(name)
+    console.print(_details(entry.name))
+    if plot is not None:
+        from lamplit.report.source_plot import plot_source
+
+        plot_source(entry, plot)
+        console.print(f"open {plot}", highlight=False)
+
+
+def _overview(names: tuple[str, ...]) -> object:
+    from rich.table import Table
+
+    from lamplit.sources import source
+
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    for column in ("Name", "x", "y", "λd nm", "lm/W"):
+        table.add_column(column, justify="left" if column == "Name" else "right", no_wrap=True)
+    table.add_column("Description")
+    for name in names:
+        table.add_row(name, *_numbers(name), source(name).description)
+    return table
+
+
+def _details(name: str) -> object:
+    from rich.table import Table
+
+    from lamplit.sources import source
+
+    entry = source(name)
+    x, y, dominant, efficacy = _numbers(name)
+    table = Table(box=None, pad_edge=False, show_header=False)
+    table.add_column(style="bold", no_wrap=True)
+    table.add_column()
+    for label, value in (
+        ("Name", entry.name),
+        ("Description", entry.description),
+        ("x, y (CIE 1931)", f"{x}, {y}"),
+        ("Dominant wavelength", f"{dominant} nm"),
+        ("Luminous efficacy", f"{efficacy} lm/W of radiation, 360-830 nm"),
+        ("Reference", entry.reference),
+        ("Licence", entry.licence),
+    ):
+        table.add_row(label, value)
+    return table
+
+
+def _numbers(name: str) -> tuple[str, str, str, str]:
+    """Return x, y, dominant wavelength and efficacy as text; a dash where light is white."""
+    from lamplit.colour.locus import dominant_wavelength
+    from lamplit.colour.tristimulus import chromaticity_xy, luminous_efficacy, tristimulus
+    from lamplit.sources import source
+
+    spd = source(name).distribution()
+    xy = chromaticity_xy(tristimulus(spd, normalisation="relative"))
+    dominant, purity = dominant_wavelength(xy)
+    hue = f"{dominant:.1f}" if purity > 0.5 else "-"
+    return f"{xy[0]:.4f}", f"{xy[1]:.4f}", hue, f"{luminous_efficacy(spd):.0f}"

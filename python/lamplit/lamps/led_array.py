@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: Apache-2.0 OR MIT
+"""A rear lamp of twelve LEDs: dies on a board, collimators or reflector cups, a tinted cover.
+
+The dies' light-emitting faces lie in the plane z = 0; +z points at the observer. Neighbouring
+parts keep at least 0.2 mm apart.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import Field
+
+from lamplit.lamps import studio
+from lamplit.lamps.cover import Cover, dome_sag, smooth_cover
+from lamplit.lamps.emitters import Collimator, Tray, grid_mm
+from lamplit.lamps.outlines import Superellipse
+from lamplit.lamps.recipe import (
+    Lamp,
+    LampParameters,
+    LensColour,
+    Table,
+    Triangles,
+    lens_material,
+    mesh_object,
+)
+from lamplit.lamps.shells import Housing
+from lamplit.lamps.solids import Solid, cuboid, repeated
+
+_BOARD_TOP_Z, _BOARD_BACK_Z = -2.5, -4.1
+_MARGIN_MM = 7.0
+_PMMA_INDEX = 1.49
+
+
+class Parameters(LampParameters):
+    """The parameters of the lamp ``led-array``."""
+
+    layout: Annotated[
+        Literal["6x2", "4x3"], Field(description="columns x rows of the twelve dies")
+    ] = "6x2"
+    pitch_mm: Annotated[
+        float, Field(ge=12.0, le=40.0, description="distance between neighbouring dies")
+    ] = 17.0
+    optics: Annotated[
+        Literal["tir", "cups"],
+        Field(description="totally reflecting collimators of clear PMMA, or aluminised cups"),
+    ] = "tir"
+    board: Annotated[
+        Literal["white", "green"], Field(description="colour of the board's solder mask")
+    ] = "white"
+    cover_colour: Annotated[LensColour, Field(description="PMMA of the cover")] = "smoke"
+    cover_thickness_mm: Annotated[float, Field(ge=1.5, le=5.0, description="wall of the cover")] = (
+        2.5
+    )
+    cover_dome_radius_mm: Annotated[
+        float, Field(ge=300.0, le=10_000.0, description="radius of the cover's front")
+    ] = 500.0
+    die_size_mm: Annotated[float, Field(ge=0.3, le=1.4, description="side of the square dies")] = (
+        1.0
+    )
+    lit: Annotated[bool, Field(description="put a small red light (624 nm) at each die")] = False
+    triangles: Triangles = 300_000
+
+    @property
+    def columns_rows(self) -> tuple[int, int]:
+        """The numbers of columns and rows."""
+        columns, rows = self.layout.split("x")
+        return int(columns), int(rows)
+
+
+@dataclass(frozen=True)
+class _Layout:
+    outline: Superellipse
+    collimator: Collimator
+    tray: Tray
+    cover: Cover
+    housing: Housing
+
+
+def build(parameters: Parameters) -> Lamp:
+    """Return the lamp's meshes and scene."""
+    layout = _layout(parameters)
+    meshes = {f"{name}.ply": solid for name, solid in _parts(parameters, layout).items()}
+    title = f"Rear lamp, twelve LEDs, {parameters.cover_colour} cover"
+    return Lamp(title, _tables(parameters, layout), meshes)
+
+
+def _layout(p: Parameters) -> _Layout:
+    columns, rows = p.columns_rows
+    outline = Superellipse(
+        0.5 * columns * p.pitch_mm + _MARGIN_MM, 0.5 * rows * p.pitch_mm + _MARGIN_MM, 5.0
+    )
+    collimator = Collimator(0.5 * p.pitch_mm - 0.9, _PMMA_INDEX)
+    focal_length = 0.094 * p.pitch_mm
+    if p.optics == "tir":
+        hole = cup = collimator.radius + 0.4
+        land = collimator.height - 0.6
+    else:
+        hole, cup = 1.6 * focal_length, 0.5 * p.pitch_mm - 0.4
+        land = cup**2 / (4.0 * focal_length) - focal_length
+    tray = Tray(p.pitch_mm, hole, cup, focal_length, land, land + 4.0)
+
+    curvature = 1.0 / p.cover_dome_radius_mm
+    blank = Cover(outline, 0.0, p.cover_thickness_mm, curvature, 0.0)
+    sag = float(dome_sag(np.array((outline.largest_radius_mm + blank.band) ** 2), curvature))
+    apex = tray.frame_z + 1.0 + sag + p.cover_thickness_mm
+    roll_end = Cover(outline, apex, p.cover_thickness_mm, curvature, 0.0).roll_end_z()
+    cover = Cover(outline, apex, p.cover_thickness_mm, curvature, roll_end - 7.0)
+    housing = Housing(
+        outline,
+        cavity_offset=cover.inner_offset,
+        channel_offset=cover.outer_offset + 0.5,
+        ledge_z=cover.skirt_z - 0.4,
+        lip_z=roll_end - 1.0,
+        floor_z=_BOARD_BACK_Z - 4.0,
+        bore_radius=None,
+    )
+    return _Layout(outline, collimator, tray, cover, housing)
+
+
+def _parts(p: Parameters, layout: _Layout) -> dict[str, Solid]:
+    places = grid_mm(*p.columns_rows, p.pitch_mm)
+    half, body = 0.5 * p.die_size_mm, 0.5 * p.die_size_mm + 0.5
+    package = cuboid((-body, -body, _BOARD_TOP_Z + 0.2), (body, body, -0.3))
+    parts = {
+        "cover": smooth_cover(layout.cover, round(0.3 * p.triangles)),
+        "tray": layout.tray.solid(
+            places, layout.outline, layout.cover.inner_offset - 2.0, round(0.25 * p.triangles)
+        ),
+        "housing": layout.housing.solid(round(0.1 * p.triangles)),
+        "packages": repeated(package, places),
+        "dies": repeated(cuboid((-half, -half, -0.1), (half, half, 0.0)), places),
+    }
+    if p.optics == "tir":
+        parts["collimators"] = layout.collimator.solids(places, round(0.35 * p.triangles))
+    return parts
+
+
+def _tables(p: Parameters, layout: _Layout) -> list[Table]:
+    housing = layout.housing
+    ground = -(layout.outline.half_height_mm + housing.outer_offset) - 0.5
+    width = 2.0 * (layout.outline.half_width_mm + housing.outer_offset)
+    height = 2.0 * (layout.outline.half_height_mm + housing.outer_offset)
+    distance = 4.2 * max(width, 1.6 * height)
+    places = grid_mm(*p.columns_rows, p.pitch_mm)
+    lights = [
+        studio.sphere_light(f"die-{k + 1}", "red-led-624", 2_500.0, (place[0], place[1], 0.6), 0.4)
+        for k, place in enumerate(places)
+        if p.lit
+    ]
+    collimators = mesh_object("collimators", "pmma-clear", crease_deg=35.0)
+    return [
+        studio.camera(
+            (0.0, -2.0, 5.0),
+            azimuth_deg=15.0,
+            elevation_deg=9.0,
+            distance_mm=distance,
+            view_deg=13.5,
+        ),
+        *studio.picture(white_luminance_cd_m2=700.0 if p.cover_colour == "smoke" else 950.0),
+        studio.hall(3e-3),
+        *studio.surroundings(190.0, 30.0, 120.0),
+        studio.soft_box(1500.0, (0.0, 250.0, 1500.0), (4000.0, 2000.0), edge_softness=0.7),
+        studio.soft_box(9000.0, (-420.0, 235.0, 1000.0), (760.0, 110.0)),
+        studio.soft_box(9000.0, (100.0, 1000.0, 600.0), (1100.0, 300.0)),
+        studio.soft_box(6000.0, (-900.0, 100.0, 450.0), (160.0, 900.0)),
+        studio.point_light("key", "D65", 4000.0, (-300.0, 700.0, 1200.0)),
+        *lights,
+        *_materials(p),
+        mesh_object("cover", "cover", crease_deg=35.0),
+        *([collimators] if p.optics == "tir" else []),
+        mesh_object(
+            "tray", "aluminium-bezel", crease_deg=35.0, comment="cups, or the mask between"
+        ),
+        mesh_object("housing", "black-abs", crease_deg=40.0),
+        mesh_object("packages", "package"),
+        mesh_object("dies", "die"),
+        Table("objects", _board(p), many=True),
+        studio.table_top(ground, "black-abs", front_mm=1.5 * width),
+    ]
+
+
+def _board(p: Parameters) -> dict[str, Any]:
+    columns, rows = p.columns_rows
+    x, y = 0.5 * columns * p.pitch_mm + 1.0, 0.5 * rows * p.pitch_mm + 1.0
+    return {
+        "name": "board",
+        "kind": "box",
+        "min_mm": [-x, -y, _BOARD_BACK_Z],
+        "max_mm": [x, y, _BOARD_TOP_Z],
+        "material": "solder-mask",
+    }
+
+
+def _materials(p: Parameters) -> list[Table]:
+    masks = {
+        "white": [0.45, 0.72, 0.80, 0.82, 0.83, 0.84, 0.84, 0.84],
+        "green": [0.03, 0.04, 0.06, 0.13, 0.09, 0.04, 0.03, 0.05],
+    }
+    return [
+        Table("materials.cover", {"library": lens_material(p.cover_colour)}),
+        Table("materials.solder-mask", _glossy(masks[p.board]), "drawn by eye, not measured"),
+        Table("materials.package", _glossy([0.5, 0.8, 0.86, 0.88, 0.88, 0.88, 0.88, 0.88])),
+        Table("materials.die", _glossy([0.12, 0.12, 0.14, 0.2, 0.3, 0.36, 0.38, 0.4], 1.8)),
+    ]
+
+
+def _glossy(reflectance: list[float], index: float = 1.5) -> dict[str, Any]:
+    table = {
+        "wavelengths_nm": [380, 430, 480, 530, 580, 630, 680, 730],
+        "values": reflectance,
+        "extension": "constant",
+    }
+    return {"kind": "glossy", "refractive_index": index, "reflectance": table}

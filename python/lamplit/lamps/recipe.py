@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: Apache-2.0 OR MIT
+"""What a lamp generator takes and gives: parameters in; meshes and the tables of a scene out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from lamplit.lamps.solids import Solid
+
+
+class LampParameters(BaseModel):
+    """The base of every lamp's parameters: frozen, finite, no unknown names."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+Triangles = Annotated[
+    int,
+    Field(ge=2_000, le=8_000_000, description="about how many triangles all meshes have together"),
+]
+LensColour = Literal["red", "amber", "smoke", "clear"]
+
+
+@dataclass(frozen=True)
+class Table:
+    """One table of a scene file: ``[key]``, or one of the list ``[[key]]`` with ``many``."""
+
+    key: str
+    values: Mapping[str, Any]
+    comment: str = ""
+    many: bool = False
+
+
+@dataclass(frozen=True)
+class Lamp:
+    """A generated lamp: the ``tables`` of its scene, and its meshes by file name."""
+
+    title: str
+    tables: list[Table]
+    meshes: dict[str, Solid] = field(default_factory=dict)
+
+    @property
+    def triangles(self) -> int:
+        """The number of triangles of all meshes."""
+        return sum(len(solid.triangles) for solid in self.meshes.values())
+
+
+def mesh_object(
+    name: str, material: str, *, crease_deg: float | None = None, comment: str = ""
+) -> Table:
+    """Return the object of the mesh ``<name>.ply``, shaded smoothly with a ``crease_deg``."""
+    shading = {} if crease_deg is None else {"smooth": True, "crease_deg": crease_deg}
+    values = {"name": name, "kind": "mesh", "file": f"{name}.ply", "unit": "mm", **shading}
+    return Table("objects", {**values, "material": material}, comment, many=True)
+
+
+def lens_material(colour: LensColour) -> str:
+    """Return the library's name of PMMA in this colour."""
+    return "pmma-clear" if colour == "clear" else f"{colour}-pmma"

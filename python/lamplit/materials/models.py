@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: Apache-2.0 OR MIT
+"""Materials as a scene or a library file writes them, told apart by ``kind``.
+
+dielectric  clear or dyed matter: refractive index and internal transmittance
+conductor   a metal by n and k, times a factor (a lacquer's loss)
+mirror      a mirror by its measured spectral reflectance
+diffuse     a matt surface by its spectral reflectance
+checker     a matt surface with squares of two reflectances
+glossy      an opaque body: Fresnel gloss over a matt base
+
+Every evaluating method takes wavelengths in nm of any shape and returns float64 of that shape; it
+raises SpectrumError where the material's data end and do not say how to go on.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar, Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike
+from pydantic import BaseModel, ConfigDict, Field
+
+from lamplit.materials.index_spec import ComplexIndexSpec, IndexSpec
+from lamplit.materials.transmittance import TransmittanceSpec
+from lamplit.spectra_spec import FractionSpec, Number, Positive
+from lamplit.spectrum import Array
+
+_Weight: TypeAlias = Annotated[Number, Field(ge=0)]
+
+
+class HallTerms(BaseModel):
+    """The weights and spectra of Hall's shading model, eqs. (3) and (4) of the method.
+
+    What is left out follows from the material: Fresnel's or its own reflectance for
+    ``specular_reflectance`` (F_sr), 1 − F_sr for ``specular_transmittance`` (F_st), and for
+    ``ambient_reflectance`` (F_sa) the matt reflectance of diffuse, checker and glossy, 0 else.
+    Source: R. Hall, Illumination and Color in Computer Generated Imagery, Springer 1989.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    k_sr: _Weight = Field(default=1.0, description="weight of the reflected highlight")
+    k_st: _Weight = Field(default=1.0, description="weight of the transmitted highlight")
+    k_sa: _Weight = Field(default=1.0, description="weight of the ambient light")
+    highlight_exponent: Positive | None = Field(
+        default=None, description="n of (L·N)^n; by kind: 1 for diffuse and checker, else 60"
+    )
+    specular_reflectance: FractionSpec | None = Field(default=None, description="F_sr")
+    specular_transmittance: FractionSpec | None = Field(default=None, description="F_st")
+    ambient_reflectance: FractionSpec | None = Field(default=None, description="F_sa")
+
+
+class _Material(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    default_highlight_exponent: ClassVar[float] = 60.0
+
+    description: str = Field(default="", description="what it is, in a sentence")
+    references: Annotated[tuple[str, ...], Field(strict=False)] = Field(
+        default=(), description="where the numbers come from, and how far to trust them"
+    )
+    licence: str = Field(default="", description="under which terms the numbers may be passed on")
+    hall: HallTerms | None = Field(default=None, description="terms of the Hall method")
+
+    def hall_terms(self) -> HallTerms:
+        """Return the Hall terms with the exponent that this kind of material has by default."""
+        terms = self.hall or HallTerms()
+        if terms.highlight_exponent is not None:
+            return terms
+        return terms.model_copy(update={"highlight_exponent": self.default_highlight_exponent})
+
+
+class Dielectric(_Material):
+    """Clear or dyed matter that light goes through: plastic, glass."""
+
+    kind: Literal["dielectric"]
+    refractive_index: IndexSpec
+    internal_transmittance: TransmittanceSpec | None = Field(
+        default=None, description="left out: perfectly clear"
+    )
+
+    def index(self, wavelengths_nm: ArrayLike) -> Array:
+        """Return n(λ)."""
+        return self.refractive_index.index()(wavelengths_nm)
+
+    def absorption_per_mm(self, wavelengths_nm: ArrayLike) -> Array:
+        """Return the napierian absorption coefficient α(λ) in 1/mm."""
+        if self.internal_transmittance is None:
+            return np.zeros(np.shape(wavelengths_nm))
+        return self.internal_transmittance.absorption_per_mm(wavelengths_nm)
+
+    def transmittance(self, wavelengths_nm: ArrayLike, thickness_mm: float) -> Array:
+        """Return the internal transmittance exp(−α b) of ``thickness_mm``."""
+        return np.exp(-self.absorption_per_mm(wavelengths_nm) * thickness_mm)
+
+
+class Conductor(_Material):
+    """A metal by its complex index n + i k."""
+
+    kind: Literal["conductor"]
+    refractive_index: ComplexIndexSpec
+    factor: Annotated[Number, Field(ge=0, le=1)] = Field(
+        default=1.0, description="times the reflectance: a lacquer's or a rough film's loss"
+    )
+
+    def index(self, wavelengths_nm: ArrayLike) -> Array:
+        """Return n(λ)."""
+        return self.refractive_index.index()(wavelengths_nm)
+
+    def extinction(self, wavelengths_nm: ArrayLike) -> Array:
+        """Return k(λ)."""
+        return self.refractive_index.extinction()(wavelengths_nm)
+
+
+class _Reflecting(_Material):
+    reflectance: FractionSpec
+
+    def reflectance_at(self, wavelengths_nm: ArrayLike) -> Array:
+        """Return the spectral reflectance, 0 to 1."""
+        return self.reflectance.distribution()(wavelengths_nm)
+
+
+class Mirror(_Reflecting):
+    """A mirror by its measured reflectance, the same at every angle."""
+
+    kind: Literal["mirror"]
+
+
+class Diffuse(_Reflecting):
+    """A matt surface."""
+
+    kind: Literal["diffuse"]
+    default_highlight_exponent: ClassVar[float] = 1.0
+
+
+class Checker(_Material):
+    """A matt surface of squares in two reflectances, on planes, discs and boxes."""
+
+    kind: Literal["checker"]
+    reflectance_a: FractionSpec
+    reflectance_b: FractionSpec
+    square_mm: Positive
+    default_highlight_exponent: ClassVar[float] = 1.0
+
+    def reflectance_a_at(self, wavelengths_nm: ArrayLike) -> Array:
+        """Return the spectral reflectance of the first squares."""
+        return self.reflectance_a.distribution()(wavelengths_nm)
+
+    def reflectance_b_at(self, wavelengths_nm: ArrayLike) -> Array:
+        """Return the spectral reflectance of the other squares."""
+        return self.reflectance_b.distribution()(wavelengths_nm)
+
+
+class Glossy(_Reflecting):
+    """An opaque body: what Fresnel does not reflect reaches a matt base."""
+
+    kind: Literal["glossy"]
+    refractive_index: IndexSpec
+
+    def index(self, wavelengths_nm: ArrayLike) -> Array:
+        """Return n(λ) of the surface."""
+        return self.refractive_index.index()(wavelengths_nm)
+
+
+#: Any material, chosen by its ``kind``.
+Material: TypeAlias = Annotated[
+    Dielectric | Conductor | Mirror | Diffuse | Checker | Glossy, Field(discriminator="kind")
+]

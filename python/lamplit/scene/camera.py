@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: Apache-2.0 OR MIT
+"""The camera, the image that it takes, and the display that will show it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Literal, TypeAlias
+
+import numpy as np
+from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic_core import PydanticCustomError
+
+from lamplit.scene.fields import Direction, FileName, Length, Number, Point, Positive, Table
+from lamplit.spectra_spec import NamedSource, SourceSpec
+
+#: The most pixels one picture may have.
+MOST_PIXELS = 100_000_000
+
+Chromaticity: TypeAlias = Annotated[tuple[Number, Number], Field(strict=False)]
+
+
+class _Camera(Table):
+    position_mm: Point
+    target_mm: Point = Field(description="the point in the middle of the picture")
+    up: Direction = Field(default=(0.0, 1.0, 0.0), description="this way is up in the picture")
+
+    @model_validator(mode="after")
+    def _looks_somewhere(self) -> _Camera:
+        view = np.subtract(self.target_mm, self.position_mm)
+        distance = float(np.linalg.norm(view))
+        if distance < 1e-9:
+            raise PydanticCustomError(
+                "looks_nowhere",
+                "the camera looks nowhere: position_mm and target_mm are the same point",
+            )
+        up = np.divide(self.up, np.linalg.norm(self.up))
+        if float(np.linalg.norm(np.cross(view / distance, up))) < 1e-6:
+            raise PydanticCustomError(
+                "up_along_view",
+                "up is parallel to the view from position_mm to target_mm; choose another up",
+            )
+        return self
+
+
+class PinholeCamera(_Camera):
+    """A camera that sees in perspective from one point."""
+
+    kind: Literal["pinhole"]
+    field_of_view_deg: Annotated[Number, Field(gt=0.0, lt=180.0)] = Field(
+        default=30.0, description="from the bottom to the top of the picture"
+    )
+
+
+class OrthographicCamera(_Camera):
+    """A camera that looks along parallel rays."""
+
+    kind: Literal["orthographic"]
+    height_mm: Length = Field(description="from the bottom to the top of the picture")
+
+
+Camera: TypeAlias = Annotated[PinholeCamera | OrthographicCamera, Field(discriminator="kind")]
+
+
+class ImageSettings(Table):
+    """Size, sampling, and the wavelengths that are followed."""
+
+    width: int = Field(default=640, ge=1, le=16384, description="pixels")
+    height: int = Field(default=400, ge=1, le=16384, description="pixels")
+    samples: int = Field(default=16, ge=1, le=1_000_000, description="samples per pixel")
+    sampling: Literal["grid", "sobol"] = "grid"
+    filter: Literal["box", "tent", "gaussian"] = "gaussian"
+    seed: int = Field(default=1, ge=0, lt=2**63)
+    observer: Literal["cie-1931-2", "cie-1964-10", "cie-2015-2"] = "cie-1931-2"
+    wavelength_range_nm: Annotated[tuple[Number, Number], Field(strict=False)] = (380.0, 780.0)
+
+    @model_validator(mode="after")
+    def _hangs_together(self) -> ImageSettings:
+        if self.width * self.height > MOST_PIXELS:
+            raise PydanticCustomError(
+                "too_many_pixels",
+                "{pixels} pixels are asked for, and at most {most} can be rendered",
+                {"pixels": self.width * self.height, "most": MOST_PIXELS},
+            )
+        side = round(self.samples**0.5)
+        if self.sampling == "grid" and side * side != self.samples:
+            raise PydanticCustomError(
+                "not_square",
+                'samples: a grid needs a square number, such as {near}; or say sampling = "sobol"',
+                {"near": side * side},
+            )
+        low, high = self.wavelength_range_nm
+        if not (200.0 <= low < high <= 2500.0 and high - low >= 10.0):
+            raise PydanticCustomError(
+                "wavelength_range",
+                "wavelength_range_nm: from a lower to a higher wavelength, "
+                "10 nm apart at least, between 200 and 2500 nm",
+            )
+        return self
+
+
+class CustomDisplay(Table):
+    """A display by its primaries, its white and its gamma."""
+
+    primaries_xy: Annotated[tuple[Chromaticity, Chromaticity, Chromaticity], Field(strict=False)]
+    white_xy: Chromaticity
+    gamma: Annotated[Positive, Field(le=10.0)]
+
+
+class IccDisplay(Table):
+    """A display by its ICC profile."""
+
+    icc: FileName
+
+
+def _display_form(value: object) -> str:
+    if isinstance(value, IccDisplay) or (isinstance(value, Mapping) and "icc" in value):
+        return "<icc>"
+    return "<custom>" if isinstance(value, (Mapping, CustomDisplay)) else "<name>"
+
+
+DisplaySpace: TypeAlias = Annotated[
+    Annotated[Literal["srgb", "display-p3", "rec2020"], Tag("<name>")]
+    | Annotated[CustomDisplay, Tag("<custom>")]
+    | Annotated[IccDisplay, Tag("<icc>")],
+    Discriminator(_display_form),
+]
+
+
+class DisplaySettings(Table):
+    """How the tristimulus values become a picture on a display."""
+
+    space: DisplaySpace = "srgb"
+    white_luminance_cd_m2: Positive | Literal["auto"] = Field(
+        default="auto", description="this luminance becomes the display's white"
+    )
+    white: SourceSpec = Field(
+        default=NamedSource("D65"), description="the white that the eye is adapted to"
+    )
+    adaptation: Literal["cat16", "bradford", "none"] = "cat16"
+    gamut: Literal["map", "clip"] = "map"

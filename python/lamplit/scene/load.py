@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: Apache-2.0 OR MIT
+"""From a TOML file to a `Scene`."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, cast
+
+from pydantic import ValidationError
+
+from lamplit.errors import LamplitError, SceneError
+from lamplit.files import resolve_inside
+from lamplit.scene.faults import scene_fault
+from lamplit.scene.models import Scene
+from lamplit.scene.objects import MeshObject
+from lamplit.scene.references import check_references
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+_MOST_BYTES = 8 * 2**20
+_DEEPEST = 16
+#: Begun at the start of a word only, these look at each character a bounded number of times.
+_LONG_CHAIN = re.compile(rf"(?<![\w\"'-])(?:[\w\"'-]+[ \t]*\.[ \t]*){{{4 * _DEEPEST}}}")
+_OPEN_BRACKETS = re.compile(rf"(?:[\[{{][ \t\r\n]*){{{4 * _DEEPEST}}}")
+
+
+def load_scene(path: str | Path, *, overrides: Mapping[str, object] | None = None) -> Scene:
+    """Return the scene in the TOML file ``path``.
+
+    ``overrides`` replace or add single values by key path, such as ``{"image.samples": 4}`` or
+    ``{"lights[0].luminance_cd_m2": 300.0}``. Files that the scene names are looked for in its
+    folder.
+
+    Raises:
+        LamplitError: The file cannot be read or does not describe a scene. The message is one
+            line with the file, the key path or line, what is wrong and what to do.
+    """
+    file = Path(path)
+    written = _read(file)
+    for key, value in (overrides or {}).items():
+        _override(written, key, value)
+    return _parsed(written, root=file.resolve().parent, path=file)
+
+
+def parse_scene(mapping: Mapping[str, object], *, root: str | Path) -> Scene:
+    """Return the scene that ``mapping`` describes, as a TOML file would; files are below ``root``.
+
+    Raises:
+        LamplitError: As for `load_scene`.
+    """
+    return _parsed(mapping, root=Path(root).resolve(), path=None)
+
+
+def _parsed(written: Mapping[str, object], *, root: Path, path: Path | None) -> Scene:
+    _check_depth(written, path)
+    if "lamplit" not in written:
+        raise SceneError(
+            "this key is missing: a scene file begins with lamplit = 1", file=path, where="lamplit"
+        )
+    try:
+        scene = Scene.model_validate(dict(written), context={"root": root})
+    except ValidationError as fault:
+        raise scene_fault(fault, written, path) from None
+    except LamplitError as fault:
+        raise type(fault)(fault.message, file=fault.file or path, where=fault.where) from fault
+    scene.place(root, path)
+    try:
+        check_references(scene)
+        _check_files(scene)
+    except LamplitError as fault:
+        raise type(fault)(fault.message, file=path or fault.file, where=fault.where) from fault
+    return scene
+
+
+def _check_files(scene: Scene) -> None:
+    for at, own in enumerate(scene.objects):
+        if isinstance(own, MeshObject):
+            resolve_inside(scene.root, own.file, where=f"objects[{at}].file")
+    icc = getattr(scene.display.space, "icc", None)
+    if icc is not None:
+        resolve_inside(scene.root, icc, where="display.space.icc")
+
+
+def _read(file: Path) -> dict[str, Any]:
+    try:
+        if not file.is_file():
+            raise SceneError(
+                "this is not a file" if file.exists() else "this file does not exist", file=file
+            )
+        size = file.stat().st_size
+        if size > _MOST_BYTES:
+            raise SceneError(
+                f"a scene file of {size} bytes is too large; keep tables of measured values in "
+                "files of their own",
+                file=file,
+            )
+        text = file.read_bytes().decode("utf-8-sig")
+    except UnicodeDecodeError as fault:
+        raise SceneError(f"this is not UTF-8 text: {fault.reason}", file=file) from fault
+    except (OSError, ValueError) as fault:
+        raise SceneError(f"the file cannot be read: {fault}", file=file) from fault
+    if "\0" in text:
+        raise SceneError("this is not a text file", file=file)
+    if _LONG_CHAIN.search(text) or _OPEN_BRACKETS.search(text):
+        raise _too_deep(file)
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as fault:
+        raise _toml_fault(fault, file) from fault
+    except RecursionError:
+        raise _too_deep(file) from None
+    except ValueError as fault:
+        raise SceneError(
+            f"a value cannot be read: {str(fault).partition(';')[0]}", file=file
+        ) from fault
+
+
+def _toml_fault(fault: Exception, file: Path) -> SceneError:
+    found = re.search(r"\(at line (\d+), column (\d+)\)", str(fault))
+    message = re.sub(r" \(at [^)]*\)", "", str(fault))[:200]
+    where = f"line {found[1]}, column {found[2]}" if found else "last line"
+    return SceneError(f"this is not sound TOML: {message}", file=file, where=where)
+
+
+def _too_deep(file: Path | None) -> SceneError:
+    return SceneError(
+        f"the scene is nested too deep; {_DEEPEST} levels are read at most", file=file
+    )
+
+
+def _check_depth(written: Mapping[str, object], file: Path | None) -> None:
+    level: list[object] = [written]
+    for _ in range(_DEEPEST):
+        level = [
+            child
+            for value in level
+            for child in (
+                cast("Mapping[str, object]", value).values()
+                if isinstance(value, Mapping)
+                else cast("list[object]", value)
+            )
+            if isinstance(child, (Mapping, list, tuple))
+        ]
+        if not level:
+            return
+    raise _too_deep(file)
+
+
+def _override(written: dict[str, Any], key: str, value: object) -> None:
+    """Set ``value`` at a key path; tables on the way are made, list entries must be there."""
+    parts = re.findall(r"[^.\[\]]+|\[\d+\]", key)
+    plain = "".join(p if p.startswith("[") else f".{p}" for p in parts).removeprefix(".")
+    if not parts or plain != key or len(parts) > _DEEPEST or parts[0].startswith("["):
+        raise SceneError(f"{key!r} is no key path; write it like image.samples or lights[0].source")
+    here: Any = written
+    for part, following in zip(parts, [*parts[1:], None], strict=True):
+        step = int(part[1:-1]) if part.startswith("[") else part
+        if isinstance(step, int):
+            if not isinstance(here, list) or step >= len(cast("list[object]", here)):
+                raise SceneError(f"there is no entry {part} to set", where=key)
+        elif not isinstance(here, dict):
+            raise SceneError(f"{part!r} cannot be set: what holds it is no table", where=key)
+        holder = cast("dict[str | int, Any]", here)
+        if following is None:
+            holder[step] = value
+        elif isinstance(step, str) and step not in holder:
+            here = holder[step] = dict[str, Any]()
+        else:
+            here = holder[step]

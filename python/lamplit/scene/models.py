@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: Apache-2.0 OR MIT
+"""`Scene`: the whole of a scene file as one frozen model."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
+
+from pydantic import Discriminator, Field, PrivateAttr, Tag
+
+from lamplit.materials import HallTerms, Material
+from lamplit.scene.camera import Camera, DisplaySettings, ImageSettings
+from lamplit.scene.fields import Name, Table
+from lamplit.scene.lighting import BLACK, Ambient, Background, HallSettings, Light
+from lamplit.scene.objects import Object
+from lamplit.spectra_spec import SourceSpec
+from lamplit.spectrum import SpectralDistribution
+
+if TYPE_CHECKING:
+    from lamplit.scene.resolve import ResolvedObject
+
+
+class LibraryMaterial(Table):
+    """A material of the library, with shading terms of the scene's own if it likes."""
+
+    library: Name
+    hall: HallTerms | None = None
+
+
+def _material_form(value: object) -> str:
+    named = isinstance(value, LibraryMaterial) or (
+        isinstance(value, Mapping) and "kind" not in value
+    )
+    return "<library>" if named else "<own>"
+
+
+SceneMaterial: TypeAlias = Annotated[
+    Annotated[LibraryMaterial, Tag("<library>")] | Annotated[Material, Tag("<own>")],
+    Discriminator(_material_form),
+]
+
+
+class Scene(Table):
+    """Everything that a picture depends on, as `lamplit.scene.load_scene` reads it.
+
+    Lengths are in mm, wavelengths in nm, angles in degrees; y is up, right-handed.
+    """
+
+    lamplit: Literal[1] = Field(description="version of this format")
+    name: Annotated[str, Field(max_length=200)] = ""
+    description: str = ""
+    camera: Camera
+    image: ImageSettings = ImageSettings()
+    display: DisplaySettings = DisplaySettings()
+    hall: HallSettings = HallSettings()
+    ambient: Ambient | None = None
+    background: Background = BLACK
+    lights: Annotated[tuple[Light, ...], Field(strict=False, max_length=1000)] = ()
+    sources: dict[Name, SourceSpec] = Field(default_factory=dict[str, Any])
+    materials: dict[Name, SceneMaterial] = Field(default_factory=dict[str, Any])
+    objects: Annotated[tuple[Object, ...], Field(strict=False, max_length=10_000)] = ()
+
+    _root: Path = PrivateAttr(default=Path())
+    _path: Path | None = PrivateAttr(default=None)
+
+    def place(self, root: Path, path: Path | None) -> None:
+        """Say where the scene comes from; the loader does this once."""
+        self._root, self._path = root, path
+
+    def changed(self, **tables: object) -> Scene:
+        """Return this scene with whole ``tables`` replaced, such as ``image=...``."""
+        copy = self.model_copy(update=tables)
+        # What was derived from the values was copied with them.
+        stale = [
+            "scene_hash",
+            *(["objects_as_read"] if {"objects", "materials"} & {*tables} else []),
+        ]
+        for name in stale:
+            vars(copy).pop(name, None)
+        return copy
+
+    @property
+    def root(self) -> Path:
+        """The folder that every file of the scene lies in."""
+        return self._root
+
+    @property
+    def path(self) -> Path | None:
+        """The scene file, or None for a scene that was never in one."""
+        return self._path
+
+    @cached_property
+    def scene_hash(self) -> str:
+        """SHA-256 over the scene's values and the contents of every file that it names."""
+        from lamplit.scene.identity import scene_hash
+
+        return scene_hash(self)
+
+    def resolve_source(self, source: str | SourceSpec) -> SpectralDistribution:
+        """Return the spectral distribution of a source, by name or by its specification.
+
+        A name is looked up in the scene's ``[sources]`` first, then in the library.
+
+        Raises:
+            SceneError: Neither knows the name.
+        """
+        from lamplit.scene.references import resolve_source
+
+        return resolve_source(self, source)
+
+    def resolve_material(self, name: str) -> Material:
+        """Return the material of this name, from ``[materials]`` or the library.
+
+        Raises:
+            SceneError: Neither knows the name.
+        """
+        from lamplit.scene.references import resolve_material
+
+        return resolve_material(self, name)
+
+    def resolved_objects(self) -> list[ResolvedObject]:
+        """Return the objects with their materials and meshes, ready to be traced.
+
+        Meshes are read once and kept. Their triangles are turned so that normals point outward.
+
+        Raises:
+            GeometryError: A mesh cannot be read, or an open one is to be a transparent body.
+            SceneError: A spectrum does not reach over the wavelengths of the picture, or the
+                camera sees none of the objects.
+        """
+        from lamplit.scene.resolve import resolve_objects
+
+        return list(resolve_objects(self))
+
+    @cached_property
+    def objects_as_read(self) -> tuple[ResolvedObject, ...]:
+        """The objects with their meshes as `resolved_objects` gives them, but sound or not."""
+        from lamplit.scene.resolve import read_objects
+
+        return read_objects(self)

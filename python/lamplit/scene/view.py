@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: Apache-2.0 OR MIT
+"""Does the camera see anything?"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lamplit.errors import LamplitError, SceneError
+from lamplit.scene.camera import PinholeCamera
+from lamplit.scene.models import Scene
+from lamplit.scene.solids import Body, bodies
+
+Array = NDArray[np.float64]
+
+
+def view_fault(scene: Scene) -> LamplitError | None:
+    """Return an error if no ray of the picture can meet an object, or an opaque body is in the way.
+
+    An object counts as seen when its bounding box is not wholly beside or behind the picture, so a
+    camera that does see something is never refused.
+    """
+    camera = scene.camera
+    eye = np.array(camera.position_mm)
+    everything = bodies(scene)
+    for body in everything:
+        if not body.thing.transparent and body.contains(eye):
+            return SceneError(
+                f"the camera is inside {body.thing.name!r}, which is opaque: move position_mm out",
+                file=scene.path,
+                where="camera.position_mm",
+            )
+    if any(_may_be_seen(scene, body) for body in everything):
+        return None
+    key = "field_of_view_deg" if isinstance(camera, PinholeCamera) else "height_mm"
+    return SceneError(
+        f"the camera sees none of the scene's objects: check position_mm, target_mm and {key}",
+        file=scene.path,
+        where="camera",
+    )
+
+
+def camera_axes(scene: Scene) -> tuple[Array, Array, Array]:
+    """Return unit vectors to the right, up and forward in the picture."""
+    camera = scene.camera
+    forward = np.subtract(camera.target_mm, camera.position_mm)
+    forward = forward / np.linalg.norm(forward)
+    right = np.cross(forward, camera.up)
+    right /= np.linalg.norm(right)
+    return right, np.cross(right, forward), forward
+
+
+def _may_be_seen(scene: Scene, body: Body) -> bool:
+    camera, image = scene.camera, scene.image
+    right, up, forward = camera_axes(scene)
+    aspect = image.width / image.height
+    eye = np.array(camera.position_mm)
+    if body.plane is not None:
+        return _plane_may_be_seen(scene, *body.plane)
+    low, high = body.bounds
+    corners = np.array([[(low, high)[i >> k & 1][k] for k in range(3)] for i in range(8)]) - eye
+    x, y, z = corners @ right, corners @ up, corners @ forward
+    if isinstance(camera, PinholeCamera):
+        height = np.tan(np.radians(camera.field_of_view_deg) / 2.0) * z
+    else:
+        height = np.full(8, camera.height_mm / 2.0)
+    width = height * aspect
+    beyond = (x > width, x < -width, y > height, y < -height, z <= 0.0)
+    return not any(bool(side.all()) for side in beyond)
+
+
+def _plane_may_be_seen(scene: Scene, point: Array, normal: Array) -> bool:
+    camera, image = scene.camera, scene.image
+    right, up, forward = camera_axes(scene)
+    height = float(np.dot(np.subtract(camera.position_mm, point), normal))
+    if not isinstance(camera, PinholeCamera):
+        return float(np.dot(forward, normal)) * height < 0.0 or height == 0.0
+    half = np.tan(np.radians(camera.field_of_view_deg) / 2.0)
+    ways = [
+        forward + half * (i * right * image.width / image.height + j * up)
+        for i in (-1, 1)
+        for j in (-1, 1)
+    ]
+    return any(float(np.dot(way, normal)) * height < 0.0 for way in ways)

@@ -1,0 +1,220 @@
+# SPDX-License-Identifier: Apache-2.0 OR MIT
+"""Every lamp is written whole, closed, outward, apart, and as the scene schema wants it."""
+
+from __future__ import annotations
+
+import itertools
+import time
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from scipy.spatial import cKDTree
+
+from lamplit.errors import LamplitError, OutputError
+from lamplit.lamps import lamp_names, lamp_parameters, write_lamp
+
+VARIANTS = [
+    ("p21w", {}),
+    ("p21w", {"triangles": 5_000}),
+    ("p21w", {"triangles": 40_000, "squareness": 2.0, "width_mm": 100, "height_mm": 100}),
+    (
+        "p21w",
+        {"triangles": 60_000, "squareness": 8.0, "pillow_pitch_mm": 3, "lens_colour": "amber"},
+    ),
+    (
+        "p21w",
+        {
+            "triangles": 30_000,
+            "width_mm": 240,
+            "height_mm": 70,
+            "focal_length_mm": 40,
+            "lens_dome_radius_mm": 5000,
+        },
+    ),
+    ("p21w", {"triangles": 30_000, "focal_length_mm": 40, "bulb_diameter_mm": 26.5, "lit": True}),
+    ("p21w", {"triangles": 30_000, "pillow_pitch_mm": 20, "pillow_radius_mm": 16}),
+    ("led-array", {}),
+    ("led-array", {"triangles": 4_000}),
+    ("led-array", {"triangles": 50_000, "optics": "cups", "layout": "4x3", "cover_colour": "red"}),
+    ("led-array", {"triangles": 50_000, "pitch_mm": 12, "die_size_mm": 0.3, "lit": True}),
+    ("led-array", {"triangles": 50_000, "pitch_mm": 40, "optics": "cups"}),
+    ("retro", {}),
+    ("retro", {"triangles": 4_000, "pitch_mm": 6}),
+    ("retro", {"aperture": "triangular", "squareness": 2.0}),
+    ("retro", {"aperture": "triangular", "pitch_mm": 1.5, "squareness": 8, "triangles": 200_000}),
+]
+IDS = [f"{name}-{k}" for k, (name, _) in enumerate(VARIANTS)]
+
+
+def meshes_of(scene: Path) -> dict[str, trimesh.Trimesh]:
+    return {
+        entry["name"]: trimesh.load_mesh(scene.parent / entry["file"])
+        for entry in tomllib.loads(scene.read_text())["objects"]
+        if entry["kind"] == "mesh"
+    }
+
+
+@pytest.mark.parametrize(("name", "parameters"), VARIANTS, ids=IDS)
+def test_every_body_is_closed_and_faces_outward(
+    name: str, parameters: dict[str, object], tmp_path: Path
+) -> None:
+    for part, mesh in meshes_of(write_lamp(name, tmp_path, parameters)).items():
+        edges, uses = np.unique(np.sort(mesh.edges, axis=1), axis=0, return_counts=True)
+        assert len(edges) and (uses == 2).all(), part
+        assert mesh.is_winding_consistent, part
+        assert all(body.volume > 0.0 for body in mesh.split(only_watertight=False)), part
+        assert mesh.area_faces.min() > 1e-7, part
+
+
+@pytest.mark.parametrize(("name", "parameters"), VARIANTS, ids=IDS)
+def test_parts_neither_touch_nor_overlap(
+    name: str, parameters: dict[str, object], tmp_path: Path
+) -> None:
+    meshes = meshes_of(write_lamp(name, tmp_path, parameters))
+    for (one, a), (two, b) in itertools.combinations(meshes.items(), 2):
+        gaps = (np.maximum(a.bounds[0], b.bounds[0]) - np.minimum(a.bounds[1], b.bounds[1])).max()
+        if gaps > 0.09:
+            continue
+        assert cKDTree(a.vertices).query(b.vertices)[0].min() > 0.19, (one, two)
+        assert not _vertices_inside(a, b), (one, two)
+        assert not _vertices_inside(b, a), (two, one)
+
+
+def _vertices_inside(solid: trimesh.Trimesh, other: trimesh.Trimesh) -> bool:
+    points = other.vertices[:: max(1, len(other.vertices) // 3000)]
+    points = points[((points > solid.bounds[0]) & (points < solid.bounds[1])).all(axis=1)]
+    return bool(len(points)) and bool(solid.contains(points).any())
+
+
+@pytest.mark.parametrize(("name", "parameters"), VARIANTS, ids=IDS)
+def test_the_scene_loads_without_notices(
+    name: str, parameters: dict[str, object], tmp_path: Path
+) -> None:
+    scene = pytest.importorskip("lamplit.scene").load_scene(write_lamp(name, tmp_path, parameters))
+    assert [entry.notices for entry in scene.resolved_objects() if entry.notices] == []
+
+
+@pytest.mark.parametrize("name", ["p21w", "led-array", "retro"])
+@pytest.mark.parametrize("wanted", [30_000, 200_000, 1_000_000])
+def test_the_number_of_triangles_is_about_as_asked(name: str, wanted: int, tmp_path: Path) -> None:
+    meshes = meshes_of(write_lamp(name, tmp_path, {"triangles": wanted}))
+    assert 0.6 < sum(len(mesh.faces) for mesh in meshes.values()) / wanted < 1.6
+
+
+def test_the_envelope_is_equally_thin_glass_all_over(tmp_path: Path) -> None:
+    scene = write_lamp("p21w", tmp_path, {"bulb_glass_mm": 0.7})
+    glass = meshes_of(scene)["envelope"]
+    assert glass.volume / (0.5 * glass.area) == pytest.approx(0.7, rel=0.03)
+
+
+def test_the_mirror_sends_light_of_the_filament_straight_ahead(tmp_path: Path) -> None:
+    mirror = meshes_of(write_lamp("p21w", tmp_path, {"triangles": 400_000}))["reflector"]
+    middles, normals = mirror.triangles_center, mirror.face_normals
+    rays = middles / np.linalg.norm(middles, axis=1, keepdims=True)
+    facing = (np.einsum("ij,ij->i", rays, normals) < -0.3) & (normals[:, 2] > 0.0)
+    out = rays - 2.0 * np.einsum("ij,ij->i", rays, normals)[:, None] * normals
+    assert facing.sum() > 10_000
+    assert np.degrees(np.arccos(out[facing, 2].clip(-1, 1))).max() < 0.6
+
+
+@pytest.mark.parametrize("aperture", ["hexagonal", "triangular"])
+def test_the_faces_of_a_cube_corner_meet_at_right_angles(aperture: str, tmp_path: Path) -> None:
+    settings = {"aperture": aperture, "triangles": 4_000}
+    plate = meshes_of(write_lamp("retro", tmp_path, settings))["plate"]
+    central = np.linalg.norm(plate.triangles_center[:, :2], axis=1) < 15.0
+    slant = plate.face_normals[central & (plate.face_normals[:, 2] < 0.0)]
+    assert len(slant) > 100
+    assert np.abs(slant[:, 2] + 1.0 / np.sqrt(3.0)).max() < 1e-4
+    kinds = np.unique(np.round(slant, 3), axis=0)
+    products = np.abs(kinds @ kinds.T - np.eye(len(kinds)))
+    right_angled = (products < 2e-3).sum(axis=1) - 1
+    assert (right_angled >= 2).all()
+
+
+def test_a_collimator_makes_the_light_of_its_die_parallel() -> None:
+    from lamplit.lamps.emitters import Collimator
+
+    profile, index = Collimator(8.0, 1.49).profile(400), 1.49
+    bore = int(np.argmin(np.abs(profile[1:, 1]))) + 1
+    outside = profile[bore + 1 : -2]
+    for one, two in zip(outside[20:-1], outside[21:], strict=True):
+        tangent = (two - one) / np.linalg.norm(two - one)
+        middle, radius = 0.5 * (one + two), profile[bore, 0]
+        low, high = 0.0, middle[1]
+        for _ in range(60):
+            z = 0.5 * (low + high)
+            sine_in = z / np.hypot(radius, z)
+            rise = (middle[1] - z) / np.hypot(middle[0] - radius, middle[1] - z)
+            low, high = (z, high) if sine_in < index * rise else (low, z)
+        inside = (middle - (radius, z)) / np.linalg.norm(middle - (radius, z))
+        out = 2.0 * (inside @ tangent) * tangent - inside
+        assert out[1] > 0.99995
+        assert abs(inside[0] * tangent[1] - inside[1] * tangent[0]) > 1.0 / index**2 * 0.9
+
+
+def test_a_lamp_is_generated_in_a_few_seconds(tmp_path: Path) -> None:
+    start = time.perf_counter()
+    write_lamp("p21w", tmp_path, {"triangles": 1_000_000})
+    assert time.perf_counter() - start < 10.0
+
+
+def test_the_paper_scene_needs_no_meshes(tmp_path: Path) -> None:
+    scene = tomllib.loads(write_lamp("paper", tmp_path).read_text())
+    assert [entry["kind"] for entry in scene["objects"]] == ["sphere", "tetrahedron", "plane"]
+    assert [path.name for path in tmp_path.iterdir()] == ["scene.toml"]
+
+
+@pytest.mark.parametrize("name", lamp_names())
+def test_every_parameter_has_a_default_and_a_meaning(name: str) -> None:
+    for parameter in lamp_parameters(name):
+        assert parameter.default is not None and parameter.limits and parameter.description
+
+
+@pytest.mark.parametrize(
+    ("name", "parameters", "message"),
+    [
+        ("p21", {}, "did you mean 'p21w'"),
+        ("p21w", {"pillow_pich_mm": "5"}, "did you mean 'pillow_pitch_mm'"),
+        ("p21w", {"lens_thickness_mm": "-1"}, "p21w.lens_thickness_mm"),
+        ("p21w", {"lens_thickness_mm": "nan"}, "finite"),
+        ("p21w", {"lens_colour": "blue"}, "'red'"),
+        ("p21w", {"pillow_radius_mm": 3}, "at least 0.8 times"),
+        ("p21w", {"triangles": "many"}, "p21w.triangles"),
+        ("retro", {"pitch_mm": 14}, "fifth of the plate"),
+    ],
+)
+def test_a_wrong_request_is_refused_in_one_line(
+    name: str, parameters: dict[str, object], message: str, tmp_path: Path
+) -> None:
+    with pytest.raises(LamplitError) as caught:
+        write_lamp(name, tmp_path / "lamp", parameters)
+    assert message in str(caught.value) and "\n" not in str(caught.value)
+    assert not (tmp_path / "lamp").exists()
+
+
+def test_own_files_are_replaced_and_others_are_not(tmp_path: Path) -> None:
+    scene = write_lamp("retro", tmp_path, {"triangles": 4_000})
+    before = (tmp_path / "plate.ply").read_bytes()
+    write_lamp("retro", tmp_path, {"triangles": 30_000})
+    assert (tmp_path / "plate.ply").read_bytes() != before
+
+    scene.write_text(scene.read_text().replace("width = 640", "width = 320"))
+    edited = scene.read_text()
+    with pytest.raises(OutputError, match="--force"):
+        write_lamp("retro", tmp_path)
+    assert scene.read_text() == edited
+    write_lamp("retro", tmp_path, force=True)
+    assert "width = 640" in scene.read_text()
+
+    (tmp_path / "plate.ply").write_bytes(b"ply of someone else")
+    with pytest.raises(OutputError, match=r"plate\.ply"):
+        write_lamp("retro", tmp_path)
+
+
+def test_a_directory_that_cannot_be_made_is_an_output_error(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OutputError):
+        write_lamp("paper", tmp_path / "file" / "lamp")
