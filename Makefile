@@ -25,8 +25,7 @@ $(VENV)/.ready: requirements/dev.lock
 
 # The compiled core and the package, installed in place.
 $(CORE): $(VENV)/.ready $(RUST) pyproject.toml
-	VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --locked --skip-install --quiet
-	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .
+	@PIP_QUIET=1 VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --locked --quiet
 	@touch $@
 
 demo: $(CORE) ## render and measure the example rear lamp; says which files to open

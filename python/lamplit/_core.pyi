@@ -2,7 +2,7 @@
 """The compiled part of Lamplit: arrays in, arrays out."""
 
 from collections.abc import Callable, Sequence
-from typing import Any, Final, final
+from typing import Any, Final, TypeAlias, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 __version__: Final[str]
 LANES: Final[int]
 
-_Spectrum = NDArray[np.float64]
-_Triple = Sequence[float]
-_Body = tuple[str, int, int]
+_Spectrum: TypeAlias = NDArray[np.float64]
+_Triple: TypeAlias = Sequence[float]
+_Body: TypeAlias = tuple[str, int, int]
 
 @final
 class HallTerms:
@@ -34,9 +34,7 @@ class SceneBuilder:
     def add_dielectric(
         self, index: _Spectrum, index_d: float, absorption_per_mm: _Spectrum, hall: HallTerms
     ) -> int: ...
-    def add_conductor(
-        self, n: _Spectrum, k: _Spectrum, factor: float, hall: HallTerms
-    ) -> int: ...
+    def add_conductor(self, n: _Spectrum, k: _Spectrum, factor: float, hall: HallTerms) -> int: ...
     def add_mirror(self, reflectance: _Spectrum, hall: HallTerms) -> int: ...
     def add_diffuse(self, reflectance: _Spectrum, hall: HallTerms) -> int: ...
     def add_checker(

@@ -158,19 +158,9 @@ class SpdxSpectrum(_Points):
 
 
 class NamedSource(RootModel[Annotated[str, Field(strict=True, min_length=1)]]):
-    """A source by name: one of the scene's own ``[sources]``, or of the library."""
+    """A source by name, one of the scene's own ``[sources]`` or of the library; the scene knows."""
 
     model_config = ConfigDict(frozen=True)
-
-    def distribution(self) -> SpectralDistribution:
-        """Return the library's source of this name.
-
-        Raises:
-            SpectrumError: The library has no such source.
-        """
-        from lamplit.sources import source
-
-        return source(self.root).distribution()
 
 
 class BlackbodySource(_Form):

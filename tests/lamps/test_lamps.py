@@ -5,11 +5,11 @@ from __future__ import annotations
 
 import itertools
 import time
-import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
+import tomllib
 import trimesh
 from scipy.spatial import cKDTree
 

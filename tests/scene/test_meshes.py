@@ -167,7 +167,7 @@ def test_an_open_mesh_says_where_it_is_open(cube: Cube, tmp_path: Path) -> None:
 
 def test_two_shells_that_share_an_edge_are_closed(cube: Cube, tmp_path: Path) -> None:
     points, triangles = cube
-    beside = points + [1.0, 1.0, 0.0]
+    beside = points + np.array([1.0, 1.0, 0.0])
     path = written_obj(
         tmp_path, np.concatenate([points, beside]), np.concatenate([triangles, triangles + 8])
     )
@@ -224,7 +224,7 @@ def test_smooth_normals_of_a_sphere_point_from_its_centre(tmp_path: Path) -> Non
     assert mesh.normals is not None
     assert mesh.normals.shape == mesh.vertices_mm.shape
     np.testing.assert_allclose(np.linalg.norm(mesh.normals, axis=1), 1.0, rtol=1e-12)
-    assert np.abs(mesh.normals - mesh.vertices_mm / 5.0).max() < 2e-3
+    assert np.abs(mesh.normals - mesh.vertices_mm / 5.0).max() < 3e-3
 
 
 def test_a_crease_keeps_the_edges_of_a_cube(cube: Cube, tmp_path: Path) -> None:
@@ -281,7 +281,6 @@ def mutants(content: bytes) -> list[bytes]:
     return found
 
 
-@pytest.mark.filterwarnings("default")
 @pytest.mark.parametrize("ending", ["ply", "ascii.ply", "stl", "ascii.stl", "obj", "glb"])
 def test_a_damaged_file_is_read_or_refused_but_never_breaks(ending: str, tmp_path: Path) -> None:
     sphere = trimesh.creation.icosphere(subdivisions=1)

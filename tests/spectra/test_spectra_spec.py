@@ -68,7 +68,6 @@ def test_every_form_gives_its_function(value: object, folder: Path) -> None:
         ({"led_peak_nm": 624, "led_fwhm_nm": 18}, 624.0),
         ({"led_peak_nm": 593.0, "led_fwhm_nm": 15, "model": "gaussian"}, 593.0),
         ({"temperature_kelvin": 5000}, 579.55),
-        ("red-led-645", 645.0),
         ({"wavelengths_nm": [400, 500], "values": [1, 9], "extension": "zero"}, 500.0),
     ],
 )

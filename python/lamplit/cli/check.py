@@ -63,5 +63,8 @@ def _tell(scene: Scene, report: Report) -> None:
     )
     counts = [sum(f.level == level for f in report.findings) for level in _STYLES]
     verdict = "sound" if report.sound else "not sound"
-    tally = f"{counts[0]} errors, {counts[1]} warnings, {counts[2]} notices"
+    tally = ", ".join(
+        f"{count} {level}{'' if count == 1 else 's'}"
+        for level, count in zip(_STYLES, counts, strict=True)
+    )
     console.print(Text(verdict, style="bold green" if report.sound else "bold red"), f"({tally})")

@@ -130,7 +130,7 @@ def _axial(points: Array, foot: Sequence[float], axis: Sequence[float]) -> tuple
 
 def _frame(normal: Array) -> tuple[Array, Array]:
     """Return two unit vectors that stand on ``normal`` and on each other."""
-    aside = np.eye(3)[int(np.argmin(np.abs(normal)))]
+    aside: Array = np.eye(3)[int(np.argmin(np.abs(normal)))]
     across: Array = np.cross(normal, aside)
     first = unit(across)
     return first, np.cross(normal, first)

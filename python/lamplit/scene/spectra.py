@@ -31,6 +31,8 @@ def spectral_faults(scene: Scene) -> list[LamplitError]:
     wavelengths = np.append(np.arange(low, high, 1.0), high)
     faults: dict[str, LamplitError] = {}
     for where, spectrum in _spectra(scene):
+        if any(known.startswith(f"{where}.") for known in faults):
+            continue  # this part of a material has been named already
         try:
             spectrum(wavelengths)
         except SpectrumError as fault:
@@ -41,9 +43,10 @@ def spectral_faults(scene: Scene) -> list[LamplitError]:
 
 def _spectra(scene: Scene) -> Iterator[tuple[str, _Spectrum]]:
     """Yield every spectrum that the picture needs, with its key path."""
-    for keys, source in values_of(scene, AnySource):
-        if keys[0] != "sources":
-            yield key_path(keys), resolve_source(scene, source)
+    used = {thing.material for thing in scene.objects}
+    for keys, spec in values_of(scene, AnySource):
+        if keys[0] != "sources" and (keys[0] != "materials" or keys[1] in used):
+            yield key_path(keys), resolve_source(scene, spec)
     for at, name in enumerate(thing.material for thing in scene.objects):
         own = name in scene.materials
         where = key_path(("materials", name)) if own else f"objects[{at}].material"

@@ -13,6 +13,8 @@ from lamplit.scene.meshes.raw import Floats, Indices
 _MOST_CELLS = 1024
 _ENTRIES = 8
 _BATCH = 4_000_000
+#: The ends of the side opposite to each corner.
+_ONE, _TWO = [1, 2, 0], [2, 0, 1]
 
 
 def _tilt() -> Floats:
@@ -102,8 +104,7 @@ class Probe:
         corners = self._corners[self._owners[starts[point] + offset]]
         relative = corners - local[point][:, None, :]
         x, y, z = relative[:, :, 0], relative[:, :, 1], relative[:, :, 2]
-        # Twice the signed areas that the point spans with the sides, seen along the line.
-        weights = x[:, [1, 2, 0]] * y[:, [2, 0, 1]] - x[:, [2, 0, 1]] * y[:, [1, 2, 0]]
+        weights = _areas(x, y)
         met = (weights > 0).all(axis=1) | (weights < 0).all(axis=1)
         point, weights, z, relative = point[met], weights[met], z[met], relative[met]
         height = (weights * z).sum(axis=1) / weights.sum(axis=1)
@@ -113,3 +114,17 @@ class Probe:
         np.minimum.at(nearest, point, np.abs(height) * slope)
         above = np.bincount(point[height > 0], minlength=len(points))
         return np.where(above % 2 == 1, -nearest, nearest)
+
+
+def _areas(x: Floats, y: Floats) -> Floats:
+    """Return twice the signed areas (c, 3) that the origin spans with a triangle's sides.
+
+    Where that is exactly zero, the order of the side's ends gives a sign, which is opposite in the
+    two triangles that share the side: one of them is met, and one only.
+    """
+    one_x, one_y, two_x, two_y = x[:, _ONE], y[:, _ONE], x[:, _TWO], y[:, _TWO]
+    areas: Floats = one_x * two_y - two_x * one_y
+    if (areas == 0).any():
+        rising = (one_x < two_x) | ((one_x == two_x) & (one_y < two_y))
+        areas = np.where(areas == 0, np.where(rising, 1e-300, -1e-300), areas)
+    return areas

@@ -3,6 +3,8 @@
 
 use glam::DVec3;
 
+use super::probe::Frame;
+
 /// Where a ray meets a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriangleHit {
@@ -24,7 +26,7 @@ pub struct TriangleHit {
 }
 
 impl TriangleHit {
-    /// Completes a hit from the corners relative to `centre`, and their weights, which need not sum
+    /// Completes a hit from the corners relative to the centre, and their weights, which need not sum
     /// to one.
     #[inline(always)]
     pub(super) fn new(
@@ -32,19 +34,19 @@ impl TriangleHit {
         direction: DVec3,
         [a, b, c]: [DVec3; 3],
         weights: [f64; 3],
-        (centre, half_extent): (DVec3, DVec3),
+        frame: &Frame,
     ) -> Self {
         let scale = 1.0 / (weights[0] + weights[1] + weights[2]);
         let (u, v) = (weights[1] * scale, weights[2] * scale);
         let (ab, ac) = (b - a, c - a);
-        let position = centre + (a + (u * ab + v * ac));
+        let position = frame.centre + (a + (u * ab + v * ac));
         Self {
             t,
             triangle,
             barycentric: [u, v],
             position,
             normal: ab.cross(ac).try_normalize().unwrap_or(-direction),
-            error: position_error(position, half_extent),
+            error: position_error(position, frame.half_extent),
         }
     }
 }

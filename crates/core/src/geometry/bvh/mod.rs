@@ -37,7 +37,7 @@ mod x86;
 
 pub use hit::TriangleHit;
 pub use kernel::Kernel;
-use probe::Probe;
+use probe::{Frame, Probe};
 
 /// Triangles per block, children per node: the lanes of one 256-bit register of `f32`.
 pub(super) const WIDTH: usize = 8;
@@ -117,10 +117,7 @@ pub(super) struct Tree {
     nodes: Vec<Node>,
     blocks: Vec<Block>,
     root: Link,
-    /// What vertices are relative to.
-    centre: DVec3,
-    /// The largest coordinate on each axis relative to the centre, without sign.
-    half_extent: DVec3,
+    frame: Frame,
     /// One that this processor has.
     kernel: Kernel,
 }
@@ -142,8 +139,7 @@ impl Tree {
             nodes,
             blocks,
             root,
-            centre,
-            half_extent,
+            frame: Frame::new(centre, half_extent),
             kernel: Kernel::best(),
         }
     }
@@ -175,10 +171,8 @@ impl Tree {
 
     /// The lower and the upper corner of the box around all triangles.
     pub fn bounds(&self) -> [DVec3; 2] {
-        [
-            self.centre - self.half_extent,
-            self.centre + self.half_extent,
-        ]
+        let (centre, half_extent) = (self.frame.centre, self.frame.half_extent);
+        [centre - half_extent, centre + half_extent]
     }
 
     /// Bytes of nodes and blocks.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 OR MIT
 //! A ray prepared for traversal.
 
-use glam::{DVec3, Vec3A};
+use glam::{DVec3, Vec3A, Vec3Swizzles};
 
 use crate::geometry::ray::Ray;
 
@@ -46,10 +46,11 @@ pub(super) struct Probe {
     pub(super) single: SinglePrecision,
 }
 
-/// What the conservative tests need. Vectors are in the order x, y, z but for `shear`.
+/// What the conservative tests need.
 #[derive(Debug)]
 pub(super) struct SinglePrecision {
-    pub(super) origin: [f32; 3],
+    /// In the order of the axes.
+    pub(super) turned_origin: [f32; 3],
     pub(super) inverse_direction: [f32; 3],
     pub(super) near_offset: [f32; 3],
     pub(super) far_offset: [f32; 3],
@@ -61,37 +62,66 @@ pub(super) struct SinglePrecision {
     pub(super) edge_constant: f32,
 }
 
+/// Where a scene is, and how much single precision errs in it.
+#[derive(Clone, Debug)]
+pub(super) struct Frame {
+    /// What coordinates are relative to.
+    pub(super) centre: DVec3,
+    /// The largest coordinate on each axis, without sign.
+    pub(super) half_extent: DVec3,
+    /// Half the extent of the box to which rays are clipped.
+    clip_box: DVec3,
+    /// 12uR
+    side_error: f32,
+    edge_slope: f32,
+    edge_constant: f32,
+}
+
+impl Frame {
+    pub fn new(centre: DVec3, half_extent: DVec3) -> Self {
+        let margin = half_extent.max_element() * CLIP_MARGIN;
+        let radius = (half_extent.max_element() + margin) as f32;
+        let coordinate_error = 16.0 * U * radius;
+        Self {
+            centre,
+            half_extent,
+            clip_box: half_extent + DVec3::splat(margin),
+            side_error: 12.0 * U * radius,
+            edge_slope: 5.0 * coordinate_error,
+            edge_constant: 5.0 * coordinate_error * coordinate_error,
+        }
+    }
+}
+
 impl Probe {
-    /// Prepares a ray for a scene within ± `half_extent` of `centre` on each axis. `None` if it
-    /// passes the scene or is not a ray (not finite, no direction).
+    /// Prepares a ray. `None` if it passes the scene or is not a ray (not finite, no direction).
     #[inline(always)]
-    pub fn new(ray: &Ray, centre: DVec3, half_extent: DVec3) -> Option<Self> {
-        let (origin, direction, t_max) = (ray.origin - centre, ray.direction, ray.t_max);
-        let radius = half_extent.max_element();
-        let clip_box = half_extent + DVec3::splat(radius * CLIP_MARGIN);
-        let start = clip(origin, direction, clip_box)?;
-        (start < t_max).then_some(())?;
+    pub fn new(ray: &Ray, frame: &Frame) -> Option<Self> {
+        let direction = ray.direction;
+        let origin = ray.origin - frame.centre;
+        let start = clip(origin, direction, frame.clip_box)?;
+        (start < ray.t_max).then_some(())?;
         let origin = origin + start * direction;
         let size = direction.abs();
-        let axes = if size.z >= size.x && size.z >= size.y {
-            [0, 1, 2]
+        // One branch for both vectors: to index them cost as much as to visit a node.
+        let (axes, turned_origin, along) = if size.z >= size.x && size.z >= size.y {
+            ([0, 1, 2], origin, direction)
         } else if size.y >= size.x {
-            [2, 0, 1]
+            ([2, 0, 1], origin.zxy(), direction.zxy())
         } else {
-            [1, 2, 0]
+            ([1, 2, 0], origin.yzx(), direction.yzx())
         };
-        let [i, j, k] = axes;
-        let along = DVec3::new(direction[i], direction[j], direction[k]);
         let per_z = 1.0 / along.z;
         let shear = DVec3::new(along.x * per_z, along.y * per_z, per_z);
-        shear.is_finite().then(|| Self {
+        (shear.x + shear.y + shear.z).is_finite().then_some(())?;
+        Some(Self {
             start,
-            t_max,
+            t_max: ray.t_max,
             axes,
-            origin: DVec3::new(origin[i], origin[j], origin[k]),
+            origin: turned_origin,
             direction: along,
             shear,
-            single: SinglePrecision::new(origin, direction, shear, radius * (1.0 + CLIP_MARGIN)),
+            single: SinglePrecision::new(origin, turned_origin, direction, shear, frame),
         })
     }
 
@@ -104,21 +134,25 @@ impl Probe {
 
 impl SinglePrecision {
     #[inline(always)]
-    fn new(origin: DVec3, direction: DVec3, shear: DVec3, radius: f64) -> Self {
+    fn new(
+        origin: DVec3,
+        turned_origin: DVec3,
+        direction: DVec3,
+        shear: DVec3,
+        frame: &Frame,
+    ) -> Self {
         let direction = Vec3A::from(direction.as_vec3());
         let inverse = 1.0 / direction.abs().max(Vec3A::splat(1e-18)).copysign(direction);
         let origin = Vec3A::from(origin.as_vec3());
-        let radius = radius as f32;
-        let (offset, error) = (-origin * inverse, 12.0 * U * radius * inverse.abs());
-        let coordinate = 16.0 * U * radius;
+        let (offset, error) = (-origin * inverse, frame.side_error * inverse.abs());
         Self {
-            origin: origin.to_array(),
+            turned_origin: turned_origin.as_vec3().to_array(),
             inverse_direction: inverse.to_array(),
             near_offset: (offset - error).to_array(),
             far_offset: (offset + error).to_array(),
             shear: [-shear.x as f32, -shear.y as f32],
-            edge_slope: 5.0 * coordinate,
-            edge_constant: 5.0 * coordinate * coordinate,
+            edge_slope: frame.edge_slope,
+            edge_constant: frame.edge_constant,
         }
     }
 }

@@ -10,30 +10,44 @@ use crate::geometry::ray::Ray;
 use super::lanes::Lanes;
 use super::{exact, Block, Link, Node, Probe, Tree, TriangleHit, MAX_DEPTH, WIDTH};
 
-/// A triangle that the ray crosses.
+/// The nearest triangle so far that the ray crosses.
 struct Crossing {
-    /// Distance from the origin of the ray.
+    /// Distance from the origin of the ray; before any crossing, that of the ray's end.
     t: f64,
     /// Index in the caller's list.
     triangle: u32,
-    block: u32,
+    /// `None` before any crossing.
+    block: Option<u32>,
     lane: u32,
     /// Weights of the corners: their sum is not one.
     weights: [f64; 3],
 }
 
 impl Crossing {
+    /// None yet.
     #[inline(always)]
-    fn hit(&self, tree: &Tree, direction: DVec3) -> TriangleHit {
-        let corners = tree.blocks[self.block as usize].corners(self.lane as usize, [0, 1, 2]);
-        let place = (tree.centre, tree.half_extent);
-        TriangleHit::new(
-            (self.t, self.triangle),
+    fn none(t_max: f64) -> Self {
+        Self {
+            t: t_max,
+            triangle: 0,
+            block: None,
+            lane: 0,
+            weights: [0.0; 3],
+        }
+    }
+
+    #[inline(always)]
+    fn hit(&self, tree: &Tree, direction: DVec3) -> Option<TriangleHit> {
+        let block = &tree.blocks[self.block? as usize];
+        let corners = block.corners(self.lane as usize, [0, 1, 2]);
+        let found = (self.t, self.triangle);
+        Some(TriangleHit::new(
+            found,
             direction,
             corners,
             self.weights,
-            place,
-        )
+            &tree.frame,
+        ))
     }
 }
 
@@ -91,14 +105,13 @@ impl<L: Lanes> Spread<L> {
     #[inline(always)]
     fn new(probe: &Probe) -> Self {
         let single = &probe.single;
-        let [i, j, k] = probe.axes;
         let negative = single.inverse_direction.map(|d| usize::from(d < 0.0));
         Self {
             near_sides: [negative[0], 2 + negative[1], 4 + negative[2]],
             inverse_direction: splat3(single.inverse_direction),
             near_offset: splat3(single.near_offset),
             far_offset: splat3(single.far_offset),
-            origin: splat3([single.origin[i], single.origin[j], single.origin[k]]),
+            origin: splat3(single.turned_origin),
             axes: probe.axes,
             shear: [L::splat(single.shear[0]), L::splat(single.shear[1])],
             edge_slope: L::splat(single.edge_slope),
@@ -167,19 +180,18 @@ impl<L: Lanes> Spread<L> {
 /// The nearest crossing; of several at the same distance, the one with the lowest triangle.
 #[inline(always)]
 pub(super) fn closest<L: Lanes>(tree: &Tree, ray: &Ray) -> Option<TriangleHit> {
-    let probe = &Probe::new(ray, tree.centre, tree.half_extent)?;
+    let probe = &Probe::new(ray, &tree.frame)?;
     let lanes = Spread::<L>::new(probe);
     let octant = lanes.octant();
-    let mut best: Option<Crossing> = None;
+    let mut best = Crossing::none(probe.t_max);
     let mut limit = probe.limit(probe.t_max);
     let mut stack: Stack = [const { MaybeUninit::uninit() }; _];
     let mut height = 0;
     let mut link = tree.root;
     loop {
         if link.is_leaf() {
-            if let Some(crossing) = nearest_in_block(tree, link, probe, &lanes, best.as_ref()) {
-                limit = probe.limit(crossing.t);
-                best = Some(crossing);
+            if search_block(tree, link, probe, &lanes, &mut best) {
+                limit = probe.limit(best.t);
             }
         } else {
             let node = &tree.nodes[link.node_index()];
@@ -214,7 +226,7 @@ pub(super) fn closest<L: Lanes>(tree: &Tree, ray: &Ray) -> Option<TriangleHit> {
         }
         loop {
             if height == 0 {
-                return best.map(|crossing| crossing.hit(tree, ray.direction));
+                return best.hit(tree, ray.direction);
             }
             height -= 1;
             // SAFETY: all entries below the former `height` have been written.
@@ -231,17 +243,18 @@ pub(super) fn closest<L: Lanes>(tree: &Tree, ray: &Ray) -> Option<TriangleHit> {
 /// cheapest to search.
 #[inline(always)]
 pub(super) fn any<L: Lanes>(tree: &Tree, ray: &Ray) -> bool {
-    let Some(probe) = &Probe::new(ray, tree.centre, tree.half_extent) else {
+    let Some(probe) = &Probe::new(ray, &tree.frame) else {
         return false;
     };
     let lanes = Spread::<L>::new(probe);
     let limit = L::splat(probe.limit(probe.t_max));
+    let mut best = Crossing::none(probe.t_max);
     let mut stack: Stack = [const { MaybeUninit::uninit() }; _];
     let mut height = 0;
     let mut link = tree.root;
     loop {
         if link.is_leaf() {
-            if nearest_in_block(tree, link, probe, &lanes, None).is_some() {
+            if search_block(tree, link, probe, &lanes, &mut best) {
                 return true;
             }
         } else {
@@ -273,38 +286,35 @@ pub(super) fn any<L: Lanes>(tree: &Tree, ray: &Ray) -> bool {
     }
 }
 
-/// The nearest crossing in a block that is nearer than `best` (and than the end of the ray).
+/// Looks for a crossing in a block that is nearer than `best`, and keeps it there. Was there one?
 #[inline(always)]
-fn nearest_in_block<L: Lanes>(
+fn search_block<L: Lanes>(
     tree: &Tree,
     link: Link,
     probe: &Probe,
     lanes: &Spread<L>,
-    best: Option<&Crossing>,
-) -> Option<Crossing> {
+    best: &mut Crossing,
+) -> bool {
     let block = &tree.blocks[link.block_index()];
     let mut candidates = lanes.candidates(block) & link.lane_mask();
-    let mut nearest = None;
+    let mut found = false;
     while candidates != 0 {
-        let lane = candidates.trailing_zeros() as usize;
+        let lane = candidates.trailing_zeros() as usize % WIDTH;
         candidates &= candidates - 1;
         let Some(point) = exact::cross(probe, &block.corners(lane, probe.axes)) else {
             continue;
         };
-        let crossing = Crossing {
-            t: probe.start + point.t,
-            weights: point.weights,
-            triangle: block.triangles[lane % WIDTH],
-            block: link.block_index() as u32,
-            lane: lane as u32,
-        };
-        let nearer = match nearest.as_ref().or(best) {
-            Some(best) => (crossing.t, crossing.triangle) < (best.t, best.triangle),
-            None => crossing.t < probe.t_max,
-        };
-        if nearer {
-            nearest = Some(crossing);
+        let (t, triangle) = (probe.start + point.t, block.triangles[lane]);
+        if (t, triangle) < (best.t, best.triangle) {
+            found = true;
+            *best = Crossing {
+                t,
+                triangle,
+                block: Some(link.block_index() as u32),
+                lane: lane as u32,
+                weights: point.weights,
+            };
         }
     }
-    nearest
+    found
 }
