@@ -36,7 +36,7 @@ SLICE = 20_000
 
 
 def pillow_shell(triangles: int) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.uint32]]:
-    """Return a closed lens shell, 120 x 80 mm and 2.5 mm thick, with 4 mm pillows on its inner side.
+    """Return a closed lens shell, 120 x 80 mm and 2.5 mm thick, with 4 mm pillows inside.
 
     Vertices (n, 3) in mm, triangles (m, 3) with m close to `triangles`; normals point outward.
     """
@@ -120,7 +120,7 @@ class Embree:
         self.build_s = build_s.value
 
     def rays_per_second(self, rays: npt.NDArray[np.float64], *, query: str) -> tuple[float, int]:
-        """Trace rays (n, 7); `query` is "closest" or "any". Return rays/s and the number of hits."""
+        """Return rays/s and the number of hits of rays (n, 7), for `query` "closest" or "any"."""
         trace = getattr(self._peer, f"peer_{query}")
         trace.restype = ctypes.c_double
         hits = ctypes.c_size_t()
@@ -176,7 +176,8 @@ def measure(
             stdout=subprocess.PIPE,
             text=True,
         ) as kernel:
-            assert kernel.stdin is not None and kernel.stdout is not None
+            assert kernel.stdin is not None
+            assert kernel.stdout is not None
             slices = np.array_split(rays, len(rays) // SLICE)
             assert all(len(part) == SLICE for part in slices)
             result[order] = alternate(

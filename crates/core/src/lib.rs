@@ -11,8 +11,8 @@
 pub mod film;
 pub mod geometry;
 pub mod light;
-pub mod matter;
 pub mod math;
+pub mod matter;
 pub mod render;
 pub mod sampling;
 pub mod scene;

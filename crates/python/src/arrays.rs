@@ -20,7 +20,10 @@ pub fn table(values: &PyReadonlyArray1<'_, f64>) -> PyResult<SpectralTable> {
 pub fn triples<T: numpy::Element + Copy>(array: &PyReadonlyArray2<'_, T>) -> PyResult<Vec<[T; 3]>> {
     let view = array.as_array();
     if view.ncols() != 3 {
-        return Err(value_error(format!("an array of shape (n, 3) is needed, not {:?}", view.shape())));
+        return Err(value_error(format!(
+            "an array of shape (n, 3) is needed, not {:?}",
+            view.shape()
+        )));
     }
     Ok(view.rows().into_iter().map(|row| [row[0], row[1], row[2]]).collect())
 }
@@ -36,11 +39,11 @@ pub fn vector(triple: Triple) -> DVec3 {
 }
 
 /// Hand a vector over as an array of the given shape.
-pub fn shaped<'py, T: numpy::Element, D>(
-    py: Python<'py>,
+pub fn shaped<T: numpy::Element, D>(
+    py: Python<'_>,
     values: Vec<T>,
     shape: D,
-) -> PyResult<Bound<'py, numpy::PyArray<T, D::Dim>>>
+) -> PyResult<Bound<'_, numpy::PyArray<T, D::Dim>>>
 where
     D: numpy::ndarray::IntoDimension,
 {

@@ -151,10 +151,8 @@ impl SceneBuilder {
     ) -> PyResult<()> {
         let (vertices, triangles) = (triples(&vertices_mm)?, triples(&triangles)?);
         let normals = normals.as_ref().map(|array| triples(array)).transpose()?;
-        py.detach(|| {
-            self.scene.add_mesh(body(owner), &vertices, &triangles, normals.as_deref())
-        })
-        .map_err(value_error)
+        py.detach(|| self.scene.add_mesh(body(owner), &vertices, &triangles, normals.as_deref()))
+            .map_err(value_error)
     }
 
     /// Add a primitive: `numbers` are its defining points and lengths, in the order of the core's
@@ -196,11 +194,7 @@ impl SceneBuilder {
         Ok(())
     }
 
-    fn add_directional_light(
-        &mut self,
-        strength: Spectrum<'_>,
-        direction: Triple,
-    ) -> PyResult<()> {
+    fn add_directional_light(&mut self, strength: Spectrum<'_>, direction: Triple) -> PyResult<()> {
         let travels = vector(direction)
             .try_normalize()
             .ok_or_else(|| value_error("the direction of a light must not be zero"))?;

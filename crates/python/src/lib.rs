@@ -4,6 +4,13 @@
 //! Arrays go in and come out; no physics happens here. The interpreter is free while a scene is
 //! built or rendered. A fault of the input is a `ValueError` with one line.
 
+// PyO3 hands arguments over one by one, and by value.
+#![allow(
+    clippy::needless_pass_by_value,
+    clippy::too_many_arguments,
+    clippy::fn_params_excessive_bools
+)]
+
 mod arrays;
 mod builder;
 mod render;

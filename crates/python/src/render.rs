@@ -6,7 +6,7 @@ use std::sync::atomic::Ordering;
 use std::sync::mpsc::{channel, RecvTimeoutError};
 use std::time::Duration;
 
-use lamplit_core::film::Film;
+use lamplit_core::film::{Film, PixelSums};
 use lamplit_core::render::{render, Progress, RenderError, RenderSettings};
 use lamplit_core::sampling::{PixelFilter, PixelSequence};
 use lamplit_core::scene;
@@ -59,7 +59,6 @@ impl Scene {
         max_depth=12, contribution_limit=1e-4, dispersion_groups=1, shadows=true,
         bands_per_lane=0, threads=0, tile=64, progress=None
     ))]
-    #[allow(clippy::fn_params_excessive_bools)]
     fn render(
         &self,
         py: Python<'_>,
@@ -182,13 +181,13 @@ impl Render {
 
     /// Mean X, Y and Z in cd/m², (height, width, 3).
     fn xyz<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        let values = self.film.pixels.iter().flat_map(|pixel| pixel.mean()).collect();
+        let values = self.film.pixels.iter().flat_map(PixelSums::mean).collect();
         shaped(py, values, self.shape(3))
     }
 
     /// The standard errors of X, Y and Z in cd/m², (height, width, 3); infinite below two samples.
     fn xyz_standard_error<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        let values = self.film.pixels.iter().flat_map(|pixel| pixel.standard_error()).collect();
+        let values = self.film.pixels.iter().flat_map(PixelSums::standard_error).collect();
         shaped(py, values, self.shape(3))
     }
 

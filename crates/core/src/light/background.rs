@@ -129,9 +129,8 @@ mod tests {
     fn a_soft_box_covers_what_is_behind_it_from_its_front_only() {
         let soft_boxes = vec![soft_box(20.0, 9.0, 0.0), soft_box(10.0, 5.0, 0.0)];
         let background = Background { base: Base::Constant(table(1.0)), soft_boxes };
-        let towards = |x: f64, y: f64| {
-            Ray::endless(DVec3::ZERO, DVec3::new(x, y, 10.0).normalize())
-        };
+        let towards =
+            |x: f64, y: f64| Ray::endless(DVec3::ZERO, DVec3::new(x, y, 10.0).normalize());
         assert_eq!(value(&background, &towards(0.0, 0.0)), 5.0);
         assert_eq!(value(&background, &towards(1.99, 0.99)), 5.0);
         assert_eq!(value(&background, &towards(2.01, 0.0)), 1.0);
@@ -141,8 +140,10 @@ mod tests {
 
     #[test]
     fn a_soft_edge_fades_without_a_step() {
-        let background =
-            Background { base: Base::Constant(table(0.0)), soft_boxes: vec![soft_box(10.0, 1.0, 1.0)] };
+        let background = Background {
+            base: Base::Constant(table(0.0)),
+            soft_boxes: vec![soft_box(10.0, 1.0, 1.0)],
+        };
         let at = |x: f64| value(&background, &Ray::endless(DVec3::new(x, 0.0, 0.0), DVec3::Z));
         assert_eq!(at(0.0), 1.0);
         assert!((at(1.0) - 0.5).abs() < 1e-12);

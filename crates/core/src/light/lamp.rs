@@ -32,7 +32,7 @@ pub enum LightShape {
 pub struct Light {
     /// Where it is.
     pub shape: LightShape,
-    /// I_l(λ): the spectral radiance of a perfect reflector that faces the light.
+    /// `I_l`(λ): the spectral radiance of a perfect reflector that faces the light.
     pub strength: SpectralTable,
 }
 

@@ -5,4 +5,4 @@ mod background;
 mod lamp;
 
 pub use background::{Background, Base, SoftBox};
-pub use lamp::{Light, LightShape, LightSample};
+pub use lamp::{Light, LightSample, LightShape};

@@ -25,7 +25,7 @@ fn refracted_cosine(cos_i: f64, eta: f64) -> Option<f64> {
     (sin2_t < 1.0).then(|| (1.0 - sin2_t).sqrt())
 }
 
-/// The unpolarised reflectance F of an interface between dielectrics, ½(r_s² + r_p²).
+/// The unpolarised reflectance F of an interface between dielectrics, `½(r_s² + r_p²)`.
 ///
 /// `cos_i` is the cosine on the incident side, `eta` = n₂/n₁. It is 1 beyond the critical angle
 /// and exactly 0 for `eta` = 1. Source: Born & Wolf, *Principles of Optics*, §1.5.2.
@@ -105,7 +105,7 @@ mod tests {
 
         #[test]
         fn refraction_obeys_snell_and_runs_backwards(
-            angle in 0.0..1.57f64, azimuth in 0.0..6.28f64, eta in 0.5..2.0f64,
+            angle in 0.0..1.57f64, azimuth in 0.0..std::f64::consts::TAU, eta in 0.5..2.0f64,
         ) {
             let wi = DVec3::new(
                 angle.sin() * azimuth.cos(), angle.sin() * azimuth.sin(), angle.cos());

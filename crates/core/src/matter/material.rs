@@ -17,7 +17,7 @@ pub struct Dielectric {
 }
 
 impl Dielectric {
-    /// The index that steers a group of lanes: n_d for all lanes, else the mean of the group's.
+    /// The index that steers a group of lanes: `n_d` for all lanes, else the mean of the group's.
     pub fn steering_index(
         &self,
         wavelengths: SampledWavelengths,
@@ -88,19 +88,19 @@ pub enum Optics {
 /// The weights and spectra of Hall's model, eqs. (3) and (4).
 #[derive(Clone, Debug)]
 pub struct HallTerms {
-    /// k_sr, the weight of reflection.
+    /// `k_sr`, the weight of reflection.
     pub reflection_weight: f64,
-    /// k_st, the weight of transmission.
+    /// `k_st`, the weight of transmission.
     pub transmission_weight: f64,
-    /// k_sa, the weight of ambient light.
+    /// `k_sa`, the weight of ambient light.
     pub ambient_weight: f64,
     /// n, the highlight exponent.
     pub highlight_exponent: f64,
-    /// F_sr in place of the material's own.
+    /// `F_sr` in place of the material's own.
     pub specular_reflectance: Option<SpectralTable>,
-    /// F_st in place of 1 − F_sr.
+    /// `F_st` in place of 1 − `F_sr`.
     pub specular_transmittance: Option<SpectralTable>,
-    /// F_sa, the reflectance that answers ambient light, in place of the material's diffuse one.
+    /// `F_sa`, the reflectance that answers ambient light, in place of the material's diffuse one.
     pub ambient_reflectance: Option<SpectralTable>,
 }
 
@@ -170,7 +170,8 @@ mod tests {
     #[test]
     fn a_checker_changes_from_square_to_square_and_not_within_rounding_of_its_plane() {
         let checker = Checker { first: table(0.1), second: table(0.9), square: 10.0 };
-        let value = |x, y, z| checker.at(DVec3::new(x, y, z)).at(SampledWavelengths { phase: 0 }).0[0];
+        let value =
+            |x, y, z| checker.at(DVec3::new(x, y, z)).at(SampledWavelengths { phase: 0 }).0[0];
         assert_eq!(value(5.0, 0.0, 5.0), 0.1);
         assert_eq!(value(15.0, 0.0, 5.0), 0.9);
         assert_eq!(value(15.0, 0.0, -5.0), 0.1);

@@ -177,14 +177,8 @@ impl Pass<'_> {
             let ray = self.scene.camera.ray(place, settings.width, settings.height);
             let wavelengths = sampler.wavelengths(phases);
             let start = (ray, self.interior);
-            let radiance = HallWalk::radiance(
-                self.scene,
-                settings.hall,
-                wavelengths,
-                sampler,
-                tally,
-                start,
-            );
+            let radiance =
+                HallWalk::radiance(self.scene, settings.hall, wavelengths, sampler, tally, start);
             if radiance.is_radiance() {
                 pixel.add(self.scene.tristimulus(radiance, wavelengths));
                 if !bands.visits.is_empty() {

@@ -104,7 +104,8 @@ impl PixelSampler {
 /// Walk through 0..count by steps near the golden section, so that every first part is spread.
 fn strided(index: u32, count: u32, offset: u32) -> u32 {
     let golden = (f64::from(count) * 0.618_033_988_749_895).round() as u32;
-    let stride = (golden.max(1)..).find(|step| coprime(*step, count)).unwrap_or(1);
+    let near = (0..count).flat_map(|away| [golden.saturating_sub(away), golden + away]);
+    let stride = near.filter(|step| *step > 0).find(|step| coprime(*step, count)).unwrap_or(1);
     ((u64::from(index) * u64::from(stride) + u64::from(offset)) % u64::from(count)) as u32
 }
 

@@ -24,7 +24,9 @@ pub enum Projection {
 #[derive(Debug, Error, PartialEq)]
 pub enum CameraError {
     /// Position and target are the same point, or `up` lies along the view.
-    #[error("the camera needs a target away from its position and an up that is not along its view")]
+    #[error(
+        "the camera needs a target away from its position and an up that is not along its view"
+    )]
     NoView,
     /// The projection's number is out of range.
     #[error("a field of view lies between 0 and 180 degrees, and an image height above 0 mm")]

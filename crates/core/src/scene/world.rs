@@ -51,6 +51,9 @@ pub struct SurfaceHit {
     pub body: BodyId,
 }
 
+/// The corners of every triangle, and the normals of all vertices (zero where a mesh is flat).
+type CornerNormals = (Vec<[u32; 3]>, Vec<[f32; 3]>);
+
 /// A scene under construction.
 #[derive(Default)]
 pub struct SceneBuilder {
@@ -160,12 +163,12 @@ pub struct Scene {
     primitives: Vec<(Primitive, BodyId)>,
     triangles: Option<Triangles>,
     triangle_bodies: Vec<BodyId>,
-    corner_normals: Option<(Vec<[u32; 3]>, Vec<[f32; 3]>)>,
+    corner_normals: Option<CornerNormals>,
     /// The eye.
     pub camera: Camera,
     /// The lights that shade.
     pub lights: Vec<Light>,
-    /// I_a(λ), the spectral radiance of a perfect reflector under the ambient light.
+    /// `I_a`(λ), the spectral radiance of a perfect reflector under the ambient light.
     pub ambient: SpectralTable,
     /// What rays see that leave the scene.
     pub background: Background,

@@ -29,11 +29,13 @@ impl SampledSpectrum {
     }
 
     /// Apply `f` to every lane.
+    #[must_use]
     pub fn map(self, mut f: impl FnMut(f64) -> f64) -> Self {
         Self(array::from_fn(|j| f(self.0[j])))
     }
 
     /// Apply `f` to the lanes of two spectra.
+    #[must_use]
     pub fn zip(self, other: Self, mut f: impl FnMut(f64, f64) -> f64) -> Self {
         Self(array::from_fn(|j| f(self.0[j], other.0[j])))
     }
@@ -54,11 +56,13 @@ impl SampledSpectrum {
     }
 
     /// Keep `lanes` and set the others to nothing.
+    #[must_use]
     pub fn only(self, lanes: std::ops::Range<usize>) -> Self {
         Self(array::from_fn(|j| if lanes.contains(&j) { self.0[j] } else { 0.0 }))
     }
 
     /// Bouguer–Beer, eq. (2): exp(−a·b) for absorption coefficients a in mm⁻¹ over b mm.
+    #[must_use]
     pub fn transmittance(self, distance_mm: f64) -> Self {
         self.map(|a| exp_of_negative(-a * distance_mm))
     }

@@ -38,7 +38,7 @@ impl SpectralTable {
     /// # Errors
     /// The values are not a multiple of [`LANES`], or one is not finite.
     pub fn from_ascending(values: &[f64]) -> Result<Self, TableError> {
-        if values.is_empty() || values.len() % LANES != 0 {
+        if values.is_empty() || !values.len().is_multiple_of(LANES) {
             return Err(TableError::Length(values.len()));
         }
         if let Some(index) = values.iter().position(|v| !v.is_finite()) {
@@ -88,9 +88,6 @@ mod tests {
         assert_eq!(SpectralTable::from_ascending(&[1.0; 17]), Err(TableError::Length(17)));
         let mut values = [1.0; 32];
         values[3] = f64::NAN;
-        assert_eq!(
-            SpectralTable::from_ascending(&values),
-            Err(TableError::NotFinite { index: 3 })
-        );
+        assert_eq!(SpectralTable::from_ascending(&values), Err(TableError::NotFinite { index: 3 }));
     }
 }

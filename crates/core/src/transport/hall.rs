@@ -4,10 +4,10 @@
 //! Per wavelength, at every surface that a ray from the eye meets after b mm in a body:
 //!
 //! - eq. (2) the light gathered so far on the way back is t(λ)^b times what arrives;
-//! - eq. (3), where the ray leaves a body: k_st·I_l·F_st·(L·N)ⁿ for each light beyond it;
-//! - eq. (4), where it meets a surface: k_sr·I_l·F_sr·(L·N)ⁿ for each light on its own side;
-//! - both with k_sa·I_a·F_sa for the ambient light;
-//! - k_sr·F_sr times what the traced mirror ray brings and k_st·F_st times what the refracted ray
+//! - eq. (3), where the ray leaves a body: `k_st`·`I_l`·`F_st`·(L·N)ⁿ for each light beyond it;
+//! - eq. (4), where it meets a surface: `k_sr`·`I_l`·`F_sr`·(L·N)ⁿ for each light on its own side;
+//! - both with `k_sa`·`I_a`·`F_sa` for the ambient light;
+//! - `k_sr`·`F_sr` times what the traced mirror ray brings and `k_st`·`F_st` times what the refracted ray
 //!   brings, with total internal reflection beyond the critical angle.
 //!
 //! Source: R. Hall, D. Greenberg, "A Testbed for Realistic Image Synthesis", IEEE CG&A 3(8), 1983;
@@ -15,7 +15,7 @@
 
 use std::ops::Range;
 
-use crate::math::{DVec3, Ray};
+use crate::math::{DVec2, DVec3, Ray};
 use crate::matter::{dielectric_reflectance, reflect, refract, Dielectric, HallTerms, Material};
 use crate::sampling::PixelSampler;
 use crate::scene::{Interior, LostRay, Scene, SurfaceHit};
@@ -32,7 +32,7 @@ pub struct HallSettings {
     /// A branch of which no lane weighs this much is not followed.
     pub contribution_limit: f64,
     /// Into how many groups of neighbouring lanes a dispersive refraction splits a ray: 1 lets all
-    /// lanes share the direction of n_d, [`LANES`] gives each lane its own.
+    /// lanes share the direction of `n_d`, [`LANES`] gives each lane its own.
     pub dispersion_groups: usize,
     /// Whether surfaces between a point and a light dim or block it.
     pub shadows: bool,
@@ -160,10 +160,10 @@ impl<'a> HallWalk<'a> {
             || eta.map(|eta| dielectric_reflectance(meeting.cos_i, eta)),
             |table| table.at(self.wavelengths),
         );
-        let mut f_st = terms.specular_transmittance.as_ref().map_or_else(
-            || SampledSpectrum::ONE - f_sr,
-            |table| table.at(self.wavelengths),
-        );
+        let mut f_st = terms
+            .specular_transmittance
+            .as_ref()
+            .map_or_else(|| SampledSpectrum::ONE - f_sr, |table| table.at(self.wavelengths));
         let mut refracted = Vec::with_capacity(1);
         for lanes in self.groups(branch, here, there) {
             let eta = self.steering(there, &lanes) / self.steering(here, &lanes);
@@ -193,8 +193,7 @@ impl<'a> HallWalk<'a> {
         let specular = material
             .opaque_specular_reflectance(meeting.cos_i, medium_index, self.wavelengths)
             .map(|own| replaced.unwrap_or(own));
-        let diffuse =
-            material.diffuse_reflectance(meeting.hit.point.position, self.wavelengths);
+        let diffuse = material.diffuse_reflectance(meeting.hit.point.position, self.wavelengths);
         match (specular, diffuse) {
             (Some(f_sr), base) => {
                 self.add_highlights(branch, meeting, terms, f_sr, branch.interior, 1.0);
@@ -215,8 +214,8 @@ impl<'a> HallWalk<'a> {
         }
     }
 
-    /// The term k·I_l·F·(L·N)ⁿ of every light on one side: `side` is 1 for the branch's own
-    /// (k_sr) and −1 for the far one (k_st). `interior` is what the way to the light starts in.
+    /// The term k·`I_l`·F·(L·N)ⁿ of every light on one side: `side` is 1 for the branch's own
+    /// (`k_sr`) and −1 for the far one (`k_st`). `interior` is what the way to the light starts in.
     fn add_highlights(
         &mut self,
         branch: &Branch,
@@ -230,7 +229,7 @@ impl<'a> HallWalk<'a> {
         let scene = self.scene;
         let weight = branch.throughput * f * k;
         for light in &scene.lights {
-            let u = if light.is_sampled() { self.sampler.next_2d() } else { Default::default() };
+            let u = if light.is_sampled() { self.sampler.next_2d() } else { DVec2::ZERO };
             let way = light.seen_from(meeting.hit.point.position, u);
             let cosine = side * way.direction.dot(meeting.normal);
             let faces = side * meeting.side() * way.direction.dot(meeting.hit.point.normal) > 0.0;
@@ -250,13 +249,8 @@ impl<'a> HallWalk<'a> {
         }
     }
 
-    /// The term k_sa·I_a·F_sa.
-    fn add_ambient(
-        &mut self,
-        branch: &Branch,
-        terms: &HallTerms,
-        own: Option<SampledSpectrum>,
-    ) {
+    /// The term `k_sa`·`I_a`·`F_sa`.
+    fn add_ambient(&mut self, branch: &Branch, terms: &HallTerms, own: Option<SampledSpectrum>) {
         let f_sa = terms.ambient_reflectance.as_ref().map(|table| table.at(self.wavelengths));
         if let Some(f_sa) = f_sa.or(own) {
             let ambient = self.scene.ambient.at(self.wavelengths);

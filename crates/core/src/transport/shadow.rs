@@ -14,9 +14,9 @@ use super::tally::Tally;
 const MOST_SURFACES: usize = 256;
 
 /// The share of a light that reaches `point`: zero behind anything opaque, else absorption (2) along
-/// the straight way times F_st of every interface crossed.
+/// the straight way times `F_st` of every interface crossed.
 ///
-/// The way is not bent, as in the study. F_st is taken for the angle outside of the denser body, at
+/// The way is not bent, as in the study. `F_st` is taken for the angle outside of the denser body, at
 /// which light crosses a parallel plate on both of its faces.
 pub(super) fn transmittance_towards(
     scene: &Scene,
@@ -51,7 +51,13 @@ pub(super) fn transmittance_towards(
             Ok(beyond) => {
                 let f_st = material.hall.specular_transmittance.as_ref();
                 share *= f_st.map_or_else(
-                    || outer_transmittance(wavelengths, cosine.abs(), [medium, scene.medium(&beyond)]),
+                    || {
+                        outer_transmittance(
+                            wavelengths,
+                            cosine.abs(),
+                            [medium, scene.medium(&beyond)],
+                        )
+                    },
                     |table| table.at(wavelengths),
                 );
                 interior = beyond;
@@ -76,8 +82,7 @@ fn outer_transmittance(
     outer: f64,
     media: [Option<&Dielectric>; 2],
 ) -> SampledSpectrum {
-    let [a, b] = media.map(|medium| {
-        medium.map_or(SampledSpectrum::ONE, |body| body.index.at(wavelengths))
-    });
+    let [a, b] =
+        media.map(|medium| medium.map_or(SampledSpectrum::ONE, |body| body.index.at(wavelengths)));
     a.zip(b, |a, b| 1.0 - dielectric_reflectance(outer, (a / b).max(b / a)))
 }

@@ -18,12 +18,7 @@ impl Cylinder {
     ///
     /// # Errors
     /// A length is not positive, or the axis has none.
-    pub fn new(
-        base: DVec3,
-        axis: DVec3,
-        radius: f64,
-        height: f64,
-    ) -> Result<Self, PrimitiveError> {
+    pub fn new(base: DVec3, axis: DVec3, radius: f64, height: f64) -> Result<Self, PrimitiveError> {
         Ok(Self {
             base,
             axis: unit("the axis of a cylinder", axis)?,

@@ -134,8 +134,7 @@ impl Primitive {
         let stretch = largest_component(self.to_world.matrix3.x_axis)
             .max(largest_component(self.to_world.matrix3.y_axis))
             .max(largest_component(self.to_world.matrix3.z_axis));
-        let world_size =
-            largest_component(position) + largest_component(self.to_world.translation);
+        let world_size = largest_component(position) + largest_component(self.to_world.translation);
         8.0 * gamma(16) * (local_size * stretch + world_size)
     }
 
@@ -184,10 +183,7 @@ impl Shape {
     }
 }
 
-fn first(
-    interval: Option<[Crossing; 2]>,
-    accept: impl Fn(&Crossing) -> bool,
-) -> Option<Crossing> {
+fn first(interval: Option<[Crossing; 2]>, accept: impl Fn(&Crossing) -> bool) -> Option<Crossing> {
     interval?.into_iter().find(accept)
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 OR MIT
 
-use std::f64::consts::FRAC_1_SQRT_2;
+use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
 use proptest::prelude::*;
 
@@ -22,7 +22,9 @@ fn solids() -> Vec<(&'static str, Primitive)> {
         ("tetrahedron", Shape::Polyhedron(ConvexPolyhedron::tetrahedron(points).unwrap())),
         (
             "box",
-            Shape::Polyhedron(ConvexPolyhedron::cuboid(-DVec3::ONE, DVec3::new(1.0, 2.0, 0.5)).unwrap()),
+            Shape::Polyhedron(
+                ConvexPolyhedron::cuboid(-DVec3::ONE, DVec3::new(1.0, 2.0, 0.5)).unwrap(),
+            ),
         ),
         ("cylinder", Shape::Cylinder(Cylinder::new(-DVec3::Z, DVec3::Z, 0.7, 2.0).unwrap())),
         ("cone", Shape::Cone(Cone::new(-DVec3::Y, DVec3::Y, 0.9, 2.0).unwrap())),
@@ -79,7 +81,8 @@ fn flat_and_endless_input_is_refused() {
 #[test]
 fn a_stretched_sphere_is_the_ellipsoid_with_its_own_normals() {
     let sphere = Shape::Sphere(Sphere::new(DVec3::ZERO, 1.0).unwrap());
-    let stretched = Primitive::new(sphere, DAffine3::from_scale(DVec3::new(2.0, 1.0, 1.0))).unwrap();
+    let stretched =
+        Primitive::new(sphere, DAffine3::from_scale(DVec3::new(2.0, 1.0, 1.0))).unwrap();
     let ray = Ray::endless(DVec3::new(2.0 * FRAC_1_SQRT_2, 5.0, 0.0), -DVec3::Y);
     let hit = stretched.closest_hit(&ray).unwrap();
     assert!((hit.position.y - FRAC_1_SQRT_2).abs() < 1e-14);
@@ -92,7 +95,7 @@ proptest! {
     /// leaves once, and a ray that starts on the surface never meets the same place again.
     #[test]
     fn a_line_through_a_solid_enters_once_and_leaves_once(
-        theta in 0.0..6.28f64, phi in -1.4..1.4f64,
+        theta in 0.0..TAU, phi in -1.4..1.4f64,
         ax in -0.1..0.1f64, ay in -0.1..0.1f64, az in -0.1..0.1f64,
         log_scale in -3.0..3.0f64, log_offset in -2.0..6.0f64,
     ) {

@@ -491,6 +491,19 @@ fn a_hit_counts_only_before_the_end_of_the_ray() {
 }
 
 #[test]
+fn of_triangles_at_the_same_distance_the_first_is_hit() {
+    let (vertices, faces) = icosphere(3);
+    let twice = build(&(vertices, [faces.clone(), faces.clone()].concat()));
+    let mut random = Random(31);
+    for _ in 0..2_000 {
+        let hit = twice
+            .closest_hit(&ray(DVec3::ZERO, random.direction()))
+            .unwrap();
+        assert!((hit.triangle as usize) < faces.len());
+    }
+}
+
+#[test]
 fn barycentric_weights_give_the_position_back() {
     let mesh = placed(icosphere(2), 20.0, 4.0);
     let sphere = build(&mesh);
