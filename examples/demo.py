@@ -37,8 +37,8 @@ def main() -> None:
         f"\nrendered          {rays / 1e6:.0f} million rays in {seconds:.0f} s\n"
         f"mean luminance    {pair.spectral.luminance_cd_m2.mean():.1f} cd/m²\n"
         f"outside sRGB      {100 * difference.spectral.picture.gamut_share:.1f} % of the pixels\n"
-        f"RGB is off by     ΔE00 {difference.mean:.1f} on average, "
-        f"{difference.percentile_95:.1f} for the worst 5 % of the pixels at least\n"
+        f"RGB is off by     ΔE00 {difference.mean:.1f} on average; "
+        f"95 % of the pixels lie below {difference.percentile_95:.1f}\n"
         f"\nFiles to open, in {OUTPUT}:"
     )
     for name, content in COMPARISON_FILES.items():

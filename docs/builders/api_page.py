@@ -20,6 +20,7 @@ Made by `make docs` from the docstrings. Everything here is a name of `lamplit`:
 """
 
 _LINE = 88
+_ATTRIBUTES: tuple[type, ...] = (property, cached_property)
 
 
 def api_page() -> str:
@@ -60,7 +61,7 @@ def _members(kind: type) -> Iterator[str]:
     for name, value in vars(kind).items():
         if name.startswith(("_", "model_")) or not inspect.getdoc(value):
             continue
-        if isinstance(value, (property, cached_property)):
+        if isinstance(value, _ATTRIBUTES):
             yield f"**`.{name}`** {_prose(value)}"
         elif isinstance(value, staticmethod) or inspect.isfunction(value):
             function: Any = value.__func__ if isinstance(value, staticmethod) else value

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from builders.sections import table
 
 import lamplit as ll
+from builders.sections import table
 from lamplit.colour.difference import delta_e_2000
 from lamplit.colour.display import Display
 from lamplit.report.difference import Difference, measure_difference
@@ -79,7 +79,7 @@ class Outcome:
     difference: Difference
     rgb_xyz: Array
     spectral_xyz: Array
-    columns: Array
+    columns: Sequence[int]
 
     def pair_differences(self) -> tuple[float, float]:
         """Return ΔE00 between the first two patches: in RGB, and in spectra."""
@@ -99,7 +99,7 @@ def compared(folder: Path) -> list[Outcome]:
 def _compared(case: Case, folder: Path) -> Outcome:
     scene = ll.load_scene(folder / f"{case.scene}.toml", overrides=case.changes)
     pair = ll.compare(scene)
-    columns = np.arange(len(case.patches)) * _PITCH + _PITCH // 2
+    columns = [at * _PITCH + _PITCH // 2 for at in range(len(case.patches))]
     rgb, spectral = (image.xyz[_PITCH // 2, columns] for image in (pair.rgb, pair.spectral))
     return Outcome(case, measure_difference(pair.spectral, pair.rgb), rgb, spectral, columns)
 
@@ -136,7 +136,9 @@ def draw_failures(outcomes: Sequence[Outcome], path: Path) -> None:
     left, top, pitch, row = 36, 120, 152, 118
     sheet = Sheet(left + 6 * pitch + 20, top + row * len(outcomes) - 10, unit=1.0)
     sheet.write(left, 48, "RGB against spectral", 20, bold=True)
-    explanation = "each patch: RGB on the left half, spectral on the right; sRGB, white at 1000 cd/m²"
+    explanation = (
+        "each patch: RGB on the left half, spectral on the right; sRGB, white at 1000 cd/m²"
+    )
     sheet.write(left, 74, explanation, 10, ink=QUIET)
     for number, outcome in enumerate(outcomes):
         base = top + row * number

@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 import numpy as np
-from builders.sections import table
 
+from builders.sections import table
 from lamplit.colour.locus import dominant_wavelength
 from lamplit.colour.tristimulus import chromaticity_xy, luminous_efficacy, tristimulus
 from lamplit.lamps import lamp_description, lamp_names, lamp_parameters

@@ -39,6 +39,6 @@ def _weightings(name: str) -> Array:
 
 
 def _write(path: Path, values: Array) -> None:
-    head = "# SPDX-License-Identifier: Apache-2.0 OR MIT\n# made by docs/make.py: spectral reflectance\n"
+    head = "# SPDX-License-Identifier: Apache-2.0 OR MIT\n# made by docs/make.py\n"
     rows = "".join(f"{nm:g}, {value:.7f}\n" for nm, value in zip(_NM, values, strict=True))
     path.write_text(f"{head}wavelength_nm, reflectance\n{rows}", encoding="utf-8")

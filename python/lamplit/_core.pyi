@@ -7,6 +7,8 @@ from typing import Any, Final, TypeAlias, final
 import numpy as np
 from numpy.typing import NDArray
 
+__all__ = ["LANES", "HallTerms", "Render", "Scene", "SceneBuilder", "__version__"]
+
 __version__: Final[str]
 LANES: Final[int]
 

@@ -40,7 +40,17 @@ def test_help_starts_in_three_tenths_of_a_second() -> None:
 
 
 def test_help_imports_no_heavy_library() -> None:
-    heavy = ["numpy", "pydantic", "colour", "scipy", "matplotlib", "trimesh", "OpenEXR", "xarray", "rich"]
+    heavy = [
+        "numpy",
+        "pydantic",
+        "colour",
+        "scipy",
+        "matplotlib",
+        "trimesh",
+        "OpenEXR",
+        "xarray",
+        "rich",
+    ]
     program = (
         "import sys; from lamplit.cli import main; main(['--help']); "
         f"print([name for name in {heavy!r} if name in sys.modules])"

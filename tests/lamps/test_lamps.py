@@ -140,7 +140,7 @@ def test_a_collimator_makes_the_light_of_its_die_parallel() -> None:
     profile, index = Collimator(8.0, 1.49).profile(400), 1.49
     bore = int(np.argmin(np.abs(profile[1:, 1]))) + 1
     outside = profile[bore + 1 : -2]
-    for one, two in zip(outside[20:-1], outside[21:], strict=True):
+    for one, two in itertools.pairwise(outside[20:]):
         tangent = (two - one) / np.linalg.norm(two - one)
         middle, radius = 0.5 * (one + two), profile[bore, 0]
         low, high = 0.0, middle[1]

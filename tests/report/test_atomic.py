@@ -44,9 +44,14 @@ def test_a_fault_while_writing_leaves_the_old_file_intact(
 ) -> None:
     path = tmp_path / "picture.png"
     path.write_bytes(b"old")
-    with pytest.raises(fault), replacing(path) as partial:
-        partial.write_bytes(b"half")
-        raise fault
+
+    def write_half() -> None:
+        with replacing(path) as partial:
+            partial.write_bytes(b"half")
+            raise fault
+
+    with pytest.raises(fault):
+        write_half()
     assert path.read_bytes() == b"old"
     assert [entry.name for entry in tmp_path.iterdir()] == ["picture.png"]
 

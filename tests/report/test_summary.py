@@ -41,7 +41,7 @@ def test_the_standard_error_of_the_mean_falls_with_the_root_of_the_pixels(
 def test_the_chromaticity_of_the_mean_weighs_pixels_by_their_light(make_image: MakeImage) -> None:
     xyz = np.array([[[2.0, 1.0, 0.0], [0.0, 1.0, 2.0]]])
     image = make_image(xyz=xyz)
-    assert summary(image, develop(image))["chromaticity_xy_of_mean"] == [1 / 3, 1 / 3]
+    assert summary(image, develop(image))["chromaticity_xy_of_mean"] == (1 / 3, 1 / 3)
 
 
 def test_black_has_no_chromaticity_and_is_still_valid_json(make_image: MakeImage) -> None:

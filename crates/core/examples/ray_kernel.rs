@@ -22,7 +22,8 @@ use std::path::Path;
 use std::time::Instant;
 
 use glam::DVec3;
-use lamplit_core::geometry::{Kernel, Ray, TriangleHit, Triangles};
+use lamplit_core::geometry::{Kernel, TriangleHit, Triangles};
+use lamplit_core::math::Ray;
 
 type Mesh = (Vec<[f64; 3]>, Vec<[u32; 3]>);
 type Outcome<T> = Result<T, Box<dyn Error>>;
@@ -34,9 +35,10 @@ fn main() -> Outcome<()> {
         ["record", mesh, rays, count] => record(mesh.as_ref(), rays.as_ref(), count.parse()?),
         ["trace", mesh, rays] => trace(mesh.as_ref(), rays.as_ref(), None),
         ["trace", mesh, rays, slice] => trace(mesh.as_ref(), rays.as_ref(), Some(slice.parse()?)),
-        _ => Err(
-            "usage: ray_kernel record MESH RAYS COUNT | ray_kernel trace MESH RAYS [SLICE]".into(),
-        ),
+        _ => {
+            Err("usage: ray_kernel record MESH RAYS COUNT | ray_kernel trace MESH RAYS [SLICE]"
+                .into())
+        }
     }
 }
 
@@ -69,10 +71,7 @@ fn trace(mesh: &Path, rays: &Path, slice: Option<usize>) -> Outcome<()> {
 }
 
 fn unlimited(ray: &Ray) -> Ray {
-    Ray {
-        t_max: f64::INFINITY,
-        ..*ray
-    }
+    Ray { t_max: f64::INFINITY, ..*ray }
 }
 
 /// Rays per second, and the number of rays for which `test` holds, as JSON.
@@ -98,11 +97,7 @@ fn record(mesh: &Path, rays: &Path, count: usize) -> Outcome<()> {
     // Row by row, as a picture is rendered: neighbours in the list are neighbours in space.
     let side = (count as f64 / 4.0).sqrt().ceil();
     let pixels = (0..).map(|pixel| {
-        DVec3::new(
-            f64::from(pixel) % side,
-            (f64::from(pixel) / side).floor() % side,
-            0.0,
-        )
+        DVec3::new(f64::from(pixel) % side, (f64::from(pixel) / side).floor() % side, 0.0)
     });
     let mut recorded = 0;
     for pixel in pixels {
@@ -118,12 +113,8 @@ fn record(mesh: &Path, rays: &Path, count: usize) -> Outcome<()> {
             }
             recorded += 1;
             let reach = random.next() * size.length();
-            let numbers = [
-                ray.origin.to_array().as_slice(),
-                &ray.direction.to_array(),
-                &[reach],
-            ]
-            .concat();
+            let numbers =
+                [ray.origin.to_array().as_slice(), &ray.direction.to_array(), &[reach]].concat();
             for number in numbers {
                 file.write_all(&number.to_le_bytes())?;
             }
@@ -141,11 +132,7 @@ fn record(mesh: &Path, rays: &Path, count: usize) -> Outcome<()> {
 /// so that all peers see the same hits.
 fn follow(ray: &Ray, hit: &TriangleHit, choice: f64, gap: f64) -> Ray {
     let outside = ray.direction.dot(hit.normal) < 0.0;
-    let (normal, eta) = if outside {
-        (hit.normal, 1.0 / 1.49)
-    } else {
-        (-hit.normal, 1.49)
-    };
+    let (normal, eta) = if outside { (hit.normal, 1.0 / 1.49) } else { (-hit.normal, 1.49) };
     let cos_i = -ray.direction.dot(normal);
     let cos_t_squared = 1.0 - eta * eta * (1.0 - cos_i * cos_i);
     let cos_t = cos_t_squared.max(0.0).sqrt();
@@ -184,11 +171,7 @@ fn read_mesh(path: &Path) -> Outcome<Mesh> {
         [word(&mut words)?, word(&mut words)?].map(|word| u64::from_le_bytes(word) as usize);
     let mut points = Vec::with_capacity(vertices);
     for _ in 0..vertices {
-        points.push([
-            number(&mut words)?,
-            number(&mut words)?,
-            number(&mut words)?,
-        ]);
+        points.push([number(&mut words)?, number(&mut words)?, number(&mut words)?]);
     }
     let corners = bytes
         .get(16 + 24 * vertices..)
@@ -199,9 +182,7 @@ fn read_mesh(path: &Path) -> Outcome<Mesh> {
         |bytes: &[u8], i: usize| u32::from_le_bytes(std::array::from_fn(|k| bytes[4 * i + k]));
     Ok((
         points,
-        corners
-            .map(|bytes| [corner(bytes, 0), corner(bytes, 1), corner(bytes, 2)])
-            .collect(),
+        corners.map(|bytes| [corner(bytes, 0), corner(bytes, 1), corner(bytes, 2)]).collect(),
     ))
 }
 

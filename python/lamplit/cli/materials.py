@@ -8,12 +8,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from lamplit.cli.listing import print_listing
 from lamplit.errors import LamplitError
 
 if TYPE_CHECKING:
     from rich.table import Table
 
     from lamplit.materials import Material
+
+_TITLES = ("name", "kind", "n_d", "V_d", "R0 %", "T or R %", "x", "y")
 
 #: The thickness at which a plate's numbers are given: a usual lamp lens.
 _LENS_MM = 2.5
@@ -42,7 +45,7 @@ def materials(
     if name is None:
         if plot is not None:
             raise LamplitError("--plot draws one material: lamplit materials NAME --plot FILE")
-        console.print(_overview([(each, material(each)) for each in material_names()]))
+        print_listing(console, _TITLES, [_listed(each) for each in material_names()])
         console.print(
             "T or R, xy: plate of 2.5 mm, or one surface, under illuminant A, CIE 1931 2°"
         )
@@ -55,20 +58,12 @@ def materials(
         console.print(f"drawn: {plot}", soft_wrap=True, markup=False)
 
 
-def _overview(entries: list[tuple[str, Material]]) -> Table:
-    from rich import box
-    from rich.table import Table
+def _listed(name: str) -> tuple[list[str], list[str]]:
+    from lamplit.materials import material
 
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for title in ("name", "kind"):
-        table.add_column(title, no_wrap=True)
-    for title in ("n_d", "V_d", "R0 %", "T or R %", "x", "y"):
-        table.add_column(title, justify="right", no_wrap=True)
-    table.add_column("description")
-    for name, entry in entries:
-        numbers = _numbers(entry)
-        table.add_row(name, entry.kind, *numbers, entry.description)
-    return table
+    entry = material(name)
+    below = [entry.description, *entry.references, f"Licence: {entry.licence}"]
+    return [name, entry.kind, *_numbers(entry)], below
 
 
 def _numbers(entry: Material) -> tuple[str, str, str, str, str, str]:

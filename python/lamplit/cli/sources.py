@@ -8,7 +8,10 @@ from typing import Annotated
 
 import typer
 
+from lamplit.cli.listing import print_listing
 from lamplit.errors import LamplitError
+
+_TITLES = ("name", "x", "y", "λd nm", "lm/W")
 
 
 def sources(
@@ -28,7 +31,7 @@ def sources(
         raise LamplitError("--plot draws one source; name it: lamplit sources NAME --plot FILE")
     console = Console()
     if name is None:
-        console.print(_overview(source_names()))
+        print_listing(console, _TITLES, [_listed(each) for each in source_names()])
         console.print(
             "x, y: CIE 1931 2°, 360-830 nm.  λd: dominant wavelength against equal-energy white.\n"
             "lm/W: luminous efficacy of radiation.  lamplit sources NAME tells more of one."
@@ -43,18 +46,11 @@ def sources(
         console.print(f"open {plot}", highlight=False)
 
 
-def _overview(names: tuple[str, ...]) -> object:
-    from rich.table import Table
-
+def _listed(name: str) -> tuple[list[str], list[str]]:
     from lamplit.sources import source
 
-    table = Table(box=None, pad_edge=False, header_style="bold")
-    for column in ("Name", "x", "y", "λd nm", "lm/W"):
-        table.add_column(column, justify="left" if column == "Name" else "right", no_wrap=True)
-    table.add_column("Description")
-    for name in names:
-        table.add_row(name, *_numbers(name), source(name).description)
-    return table
+    entry = source(name)
+    return [name, *_numbers(name)], [entry.description, f"{entry.reference}. {entry.licence}"]
 
 
 def _details(name: str) -> object:

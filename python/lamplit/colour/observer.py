@@ -3,21 +3,14 @@
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lamplit.cie_tables import cie_table
 from lamplit.errors import LamplitError, nearest_name
 
 #: The observers by name: CIE 1931 2°, CIE 1964 10°, CIE 2015 2° (cone-fundamental based).
 OBSERVERS = ("cie-1931-2", "cie-1964-10", "cie-2015-2")
-
-_TITLES = {
-    "cie-1931-2": "CIE 1931 2 Degree Standard Observer",
-    "cie-1964-10": "CIE 1964 10 Degree Standard Observer",
-    "cie-2015-2": "CIE 2015 2 Degree Standard Observer",
-}
 
 
 def colour_matching_functions(observer: str, wavelengths_nm: ArrayLike) -> NDArray[np.float64]:
@@ -30,23 +23,15 @@ def colour_matching_functions(observer: str, wavelengths_nm: ArrayLike) -> NDArr
     Raises:
         LamplitError: There is no such observer.
     """
-    nm = np.asarray(wavelengths_nm, dtype=np.float64)
-    table_nm, table = _table(observer)
-    columns = [np.interp(nm, table_nm, table[:, i], left=0.0, right=0.0) for i in range(3)]
-    return np.stack(columns, axis=-1)
-
-
-@cache
-def _table(observer: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     if observer not in OBSERVERS:
         raise LamplitError(
             f"there is no observer {observer!r}{nearest_name(observer, OBSERVERS)}; "
             f"choose one of {', '.join(OBSERVERS)}"
         )
-    import colour
-
-    functions = colour.MSDS_CMFS[_TITLES[observer]]
-    return (
-        np.asarray(functions.wavelengths, dtype=np.float64),
-        np.asarray(functions.values, dtype=np.float64),
-    )
+    table = cie_table(observer)
+    nm = np.asarray(wavelengths_nm, dtype=np.float64)
+    functions = [
+        np.interp(nm, table.wavelengths_nm, values, left=0.0, right=0.0)
+        for values in table.columns.values()
+    ]
+    return np.stack(functions, axis=-1)

@@ -61,12 +61,21 @@ class Carrier(Protocol):
 class SpectralCarrier:
     """The wavelengths of the picture: the middles of steps of at most 1 nm."""
 
+    #: How many wavelengths each lane takes in turn, from one sample to the next.
+    phases: int
+    #: How many wavelengths there are.
+    count: int
+    step_nm: float
+    #: All of them, (count,), rising.
+    wavelengths_nm: Array
+
     def __init__(self, range_nm: tuple[float, float], observer: str) -> None:
         low, high = range_nm
         self.phases = max(1, int(np.ceil((high - low) / LANES - 1e-9)))
         self.count = self.phases * LANES
         self.step_nm = (high - low) / self.count
-        self.wavelengths_nm: Array = low + self.step_nm * (np.arange(self.count) + 0.5)
+        middles = np.arange(self.count, dtype=np.float64) + 0.5
+        self.wavelengths_nm = low + self.step_nm * middles
         self._functions = colour_matching_functions(observer, self.wavelengths_nm)
 
     def tristimulus(self, radiance: Array) -> Array:
@@ -117,7 +126,7 @@ class RgbCarrier:
     become 0; transmittances stay above 1e-6.
     """
 
-    count = LANES
+    count: int = LANES
 
     def __init__(self, spectral: SpectralCarrier, white: Spectrum, *, space: str = "srgb") -> None:
         self._spectral = spectral

@@ -36,12 +36,6 @@ def compare(
         RenderInterrupted: Ctrl-C.
     """
     steered_alike = scene.changed(hall=scene.hall.model_copy(update={"dispersion_groups": 1}))
-
-    def watch(half: int) -> ProgressCallback | None:
-        if progress is None:
-            return None
-        return lambda done, total: progress(half * total + done, 2 * total)
-
     spectral, rgb = (
         render(
             steered_alike,
@@ -49,8 +43,13 @@ def compare(
             colour=colour,
             samples=samples,
             threads=threads,
-            progress=watch(half),
+            progress=None if progress is None else _half_of(progress, half),
         )
         for half, colour in enumerate(("spectral", "rgb"))
     )
     return Comparison(spectral, rgb)
+
+
+def _half_of(progress: ProgressCallback, half: int) -> ProgressCallback:
+    """Return what tells ``progress`` of the first (0) or the second (1) of two equal pictures."""
+    return lambda done, total: progress(half * total + done, 2 * total)

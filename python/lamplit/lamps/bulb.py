@@ -7,6 +7,7 @@ and 1 mm wide (UN R37, category P21W; the inner parts are drawn to look right, n
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -44,7 +45,7 @@ class Bulb:
 
     def _outer_profile(self, steps: int) -> Floats:
         """Points (radius, z) from the tip over the sphere and the shoulder to the neck's end."""
-        radius, last = 0.5 * self.diameter, np.radians(118.0)
+        radius, last = 0.5 * self.diameter, math.radians(118.0)
         turn = np.linspace(0.0, last, round(0.6 * steps) + 1)
         sphere = np.column_stack([radius * np.sin(turn), self.forward + radius * np.cos(turn)])
         start, end = sphere[-1], np.array([_NECK_RADIUS, _CAP_TOP_Z + 2.0])

@@ -105,7 +105,8 @@ class Cover:
         slope = _dome_slope(np.sum(start[:, :2] ** 2, axis=1), self.dome_curvature) * outward
         first = np.arctan(slope)
         radius = reach / (1.0 - np.sin(first))
-        angles = np.linspace(first, np.full(len(first), 0.5 * np.pi), steps + 1)
+        share = np.linspace(0.0, 1.0, steps + 1)[:, None]
+        angles = (1.0 - share) * first + share * (0.5 * np.pi)
         across = self.band + radius * (np.sin(angles) - np.sin(first))
         down = radius * (np.cos(first) - np.cos(angles))
         rings = np.stack([_moved(self.optics, border, offset) for offset in across])

@@ -44,8 +44,9 @@ class Superellipse:
         steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
         normals = self.normals(points)
         turns = np.linalg.norm(np.diff(normals, axis=0), axis=1)
-        way = np.cumsum(steps / steps.sum() + turns / turns.sum())
-        return np.interp(np.arange(count) * (2.0 / count), np.append(0.0, way), fine)
+        way = np.zeros(len(fine))
+        np.cumsum(steps / steps.sum() + turns / turns.sum(), out=way[1:])
+        return np.interp(np.linspace(0.0, 2.0, count, endpoint=False), way, fine)
 
     def ring(self, angles: Floats, offset_mm: float | Floats, z_mm: float | Floats) -> Floats:
         """Return the loop (n, 3) that runs ``offset_mm`` outside the curve at height ``z_mm``."""
@@ -59,7 +60,7 @@ class Superellipse:
         radii = np.linalg.norm(
             self.points(np.linspace(0.0, 2.0 * np.pi, 1024, endpoint=False)), axis=1
         )
-        return float(np.pi * np.mean(radii**2))
+        return float(np.pi * (radii**2).mean())
 
     @property
     def perimeter_mm(self) -> float:

@@ -47,9 +47,9 @@ def square_patch(outline: Superellipse, pitch_mm: float, divisions: int) -> Patc
     far = right + 1
     middle = (divisions - 1) / 2.0
     rising = ((i % divisions) - middle) * ((j % divisions) - middle) >= 0.0
-    quads = [(corner, right, far, up), (right, far, up, corner)]
-    a, b, c, d = (np.where(rising, one, two) for one, two in zip(*quads, strict=True))
-    triangles = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
+    quads = np.stack([corner, right, far, up], axis=1)
+    quads[~rising] = np.roll(quads[~rising], -1, axis=1)
+    triangles = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
     x = np.arange(-columns, columns + 1, dtype=np.float64) * step
     y = np.arange(-rows, rows + 1, dtype=np.float64) * step
     xy = np.stack([np.repeat(x, len(y)), np.tile(y, len(x))], axis=1)

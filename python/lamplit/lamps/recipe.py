@@ -3,10 +3,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeAlias
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from lamplit.lamps.solids import Solid
@@ -25,12 +27,18 @@ Triangles = Annotated[
 LensColour = Literal["red", "amber", "smoke", "clear"]
 
 
+#: A value of a TOML file; arrays of numbers may be numpy's.
+TomlValue: TypeAlias = (
+    "str | float | NDArray[np.floating[Any]] | Sequence[TomlValue] | Mapping[str, TomlValue]"
+)
+
+
 @dataclass(frozen=True)
 class Table:
     """One table of a scene file: ``[key]``, or one of the list ``[[key]]`` with ``many``."""
 
     key: str
-    values: Mapping[str, Any]
+    values: Mapping[str, TomlValue]
     comment: str = ""
     many: bool = False
 

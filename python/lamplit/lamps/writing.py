@@ -6,15 +6,14 @@ from __future__ import annotations
 import hashlib
 import json
 import secrets
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from lamplit.errors import OutputError
-from lamplit.lamps.recipe import Lamp, Table
+from lamplit.lamps.recipe import Lamp, Table, TomlValue
 from lamplit.lamps.solids import Solid
 
 _PLY_MARK = "comment written by lamplit lamp"
@@ -83,14 +82,15 @@ def _table_text(table: Table) -> str:
     return "\n".join([f"{comment}\n{head}", *lines])
 
 
-def _toml(value: Any) -> str:
+def _toml(value: TomlValue) -> str:
+    if isinstance(value, (str, int)):
+        return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, float):
+        return repr(round(value, 6) + 0.0)
     if isinstance(value, Mapping):
-        return "{ " + ", ".join(f"{k} = {_toml(v)}" for k, v in value.items()) + " }"
-    if isinstance(value, (list, tuple, np.ndarray)):
-        return "[" + ", ".join(_toml(item) for item in value) + "]"
-    if isinstance(value, (float, np.floating)):
-        return repr(round(float(value), 6) + 0.0)
-    return json.dumps(value, ensure_ascii=False)
+        return "{ " + ", ".join(f"{key} = {_toml(own)}" for key, own in value.items()) + " }"
+    items: Sequence[TomlValue] = value.tolist() if isinstance(value, np.ndarray) else value
+    return "[" + ", ".join(map(_toml, items)) + "]"
 
 
 def _checksum(body: str) -> str:

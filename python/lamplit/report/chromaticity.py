@@ -112,11 +112,10 @@ def _draw_ground(axes: Axes, locus: Array, observer: str, scale: float) -> None:
 def _draw_marks(axes: Axes, marks: Sequence[Mark], scale: float, *, numbers: bool) -> None:
     style: dict[str, Any] = {"linestyle": "none", "clip_on": True}
     for mark in marks:
-        ends = [chromaticity(mark.rgb_xyz), chromaticity(mark.spectral_xyz)]
-        if ends[0] is None or ends[1] is None:
+        rgb, spectral = chromaticity(mark.rgb_xyz), chromaticity(mark.spectral_xyz)
+        if rgb is None or spectral is None:
             continue
-        rgb, spectral = np.array(ends[0]), np.array(ends[1])
-        axes.plot(*np.stack([rgb, spectral]).T, color="white", linewidth=0.8 * scale, alpha=0.8)
+        axes.plot(*np.transpose([rgb, spectral]), color="white", linewidth=0.8 * scale, alpha=0.8)
         axes.plot(*rgb, "o", ms=5.5 * scale, mfc=PAGE, mec="white", mew=1.1 * scale, **style)
         axes.plot(*spectral, "o", ms=5.5 * scale, mfc="white", mec=PAGE, mew=0.6 * scale, **style)
         if numbers:

@@ -11,7 +11,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,7 +43,7 @@ def write_exr(path: Path, image: Image, developed: Developed, *, spectral: bool 
     """
     import OpenEXR
 
-    header = {
+    header: dict[str, Any] = {
         "compression": OpenEXR.ZIP_COMPRESSION,
         "type": OpenEXR.scanlineimage,
         **_attributes(image, developed),
@@ -57,6 +57,18 @@ def write_exr(path: Path, image: Image, developed: Developed, *, spectral: bool 
             OpenEXR.File(header, channels).write(str(partial))
         except RuntimeError as fault:
             raise OSError(str(fault)) from fault
+
+
+class _Channel(Protocol):
+    pixels: NDArray[np.float32]
+
+
+class _Stored(Protocol):
+    """What of OpenEXR's File is used; the library has no types."""
+
+    def channels(self) -> dict[str, _Channel]: ...
+
+    def header(self) -> dict[str, Any]: ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +93,7 @@ def read_exr(path: Path) -> ExrFile:
     import OpenEXR
 
     try:
-        file = OpenEXR.File(str(path), separate_channels=True)
+        file = cast("_Stored", OpenEXR.File(str(path), separate_channels=True))
     except (OSError, RuntimeError, ValueError) as fault:
         raise OutputError(f"cannot be read as OpenEXR: {fault}", file=path) from fault
     channels = {name: channel.pixels for name, channel in file.channels().items()}

@@ -65,7 +65,7 @@ def percentiles(values: NDArray[np.float64], shares: tuple[float, ...]) -> dict[
     return {f"{share:g}": float(value) for share, value in zip(shares, found, strict=True)}
 
 
-def chromaticity(xyz: NDArray[np.float64]) -> list[float] | None:
-    """Return [x, y] of one XYZ, or None for black, which has none."""
+def chromaticity(xyz: NDArray[np.float64]) -> tuple[float, float] | None:
+    """Return (x, y) of one XYZ, or None for black, which has none."""
     total = float(xyz.sum())
-    return [float(xyz[0]) / total, float(xyz[1]) / total] if total > 0 else None
+    return (float(xyz[0]) / total, float(xyz[1]) / total) if total > 0 else None

@@ -8,6 +8,7 @@ from functools import partial
 
 import numpy as np
 
+from lamplit.cie_tables import cie_table
 from lamplit.sources.entry import SourceEntry
 from lamplit.spectrum import Array, SpectralDistribution
 
@@ -87,13 +88,14 @@ def illuminant_a() -> SpectralDistribution:
     return SpectralDistribution(power, (100.0, 1e5), label="CIE illuminant A")
 
 
-def _published(name: str) -> SpectralDistribution:
+def _published(table: str, name: str) -> SpectralDistribution:
     """Return the CIE's 5 nm table, joined by straight lines and zero outside it."""
-    import colour
-
-    table = colour.SDS_ILLUMINANTS[name]
+    found = cie_table(table)
     return SpectralDistribution.tabulated(
-        table.wavelengths, table.values, extension="zero", label=f"CIE illuminant {name}"
+        found.wavelengths_nm,
+        found.columns[name],
+        extension="zero",
+        label=f"CIE illuminant {name}",
     )
 
 
@@ -114,13 +116,12 @@ def cie_entries() -> Iterator[SourceEntry]:
         partial(SpectralDistribution.constant, 100.0, label="CIE illuminant E"),
     )
     groups = (
-        ("CIE illuminant", _DAYLIGHT),
-        ("CIE fluorescent lamp", _FLUORESCENT),
-        ("CIE discharge lamp", _DISCHARGE),
-        ("CIE", _LED),
+        ("daylights", "CIE illuminant", _DAYLIGHT),
+        ("lamps", "CIE fluorescent lamp", _FLUORESCENT),
+        ("lamps", "CIE discharge lamp", _DISCHARGE),
+        ("lamps", "CIE", _LED),
     )
-    for kind, names in groups:
+    for table, kind, names in groups:
         for name, what in names.items():
-            yield SourceEntry(
-                name, f"{kind} {name}: {what}", _TABLES, _LICENCE, partial(_published, name)
-            )
+            build = partial(_published, table, name)
+            yield SourceEntry(name, f"{kind} {name}: {what}", _TABLES, _LICENCE, build)

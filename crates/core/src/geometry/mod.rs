@@ -3,12 +3,12 @@
 
 mod bvh;
 mod primitive;
-mod ray;
+mod surface_point;
 mod triangles;
 
 pub use bvh::Kernel;
 pub use primitive::{
     Cone, ConvexPolyhedron, Cylinder, Disc, Plane, Primitive, PrimitiveError, Shape, Sphere,
 };
-pub use ray::{Ray, SurfacePoint};
+pub use surface_point::SurfacePoint;
 pub use triangles::{TriangleHit, Triangles, TrianglesError};

@@ -6,7 +6,7 @@ use thiserror::Error;
 
 pub use super::bvh::TriangleHit;
 use super::bvh::{Kernel, Tree, MAX_TRIANGLES};
-use super::ray::Ray;
+use crate::math::Ray;
 
 #[cfg(test)]
 mod tests;
@@ -80,9 +80,7 @@ impl Triangles {
     /// An index beyond the vertices, a vertex that is not finite, and meshes too large or too many.
     pub fn build(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<Self, TrianglesError> {
         if triangles.len() > MAX_TRIANGLES {
-            return Err(TrianglesError::TooMany {
-                triangles: triangles.len(),
-            });
+            return Err(TrianglesError::TooMany { triangles: triangles.len() });
         }
         let (lo, hi) = bounds(vertices, triangles)?;
         if triangles.is_empty() {
@@ -97,10 +95,7 @@ impl Triangles {
             .iter()
             .map(|&vertex| (DVec3::from_array(vertex) - centre).as_vec3().to_array())
             .collect();
-        Ok(Self {
-            tree: Some(Tree::build(centre, &rounded, triangles)),
-            len: triangles.len(),
-        })
+        Ok(Self { tree: Some(Tree::build(centre, &rounded, triangles)), len: triangles.len() })
     }
 
     /// The same triangles, traced by another kernel: for tests and measurements. All give the same
@@ -152,10 +147,7 @@ impl Triangles {
 
     /// The kernel that traces: `portable`, `avx2` or `avx512`.
     pub fn kernel_name(&self) -> &'static str {
-        self.tree
-            .as_ref()
-            .map_or(Kernel::best(), Tree::kernel)
-            .name()
+        self.tree.as_ref().map_or(Kernel::best(), Tree::kernel).name()
     }
 }
 
@@ -164,13 +156,11 @@ fn bounds(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<(DVec3, DVec3
     let (mut lo, mut hi) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for (triangle, corners) in triangles.iter().enumerate() {
         for &vertex in corners {
-            let point = vertices
-                .get(vertex as usize)
-                .ok_or(TrianglesError::NoSuchVertex {
-                    triangle,
-                    vertex,
-                    vertices: vertices.len(),
-                })?;
+            let point = vertices.get(vertex as usize).ok_or(TrianglesError::NoSuchVertex {
+                triangle,
+                vertex,
+                vertices: vertices.len(),
+            })?;
             let point = DVec3::from_array(*point);
             if !point.is_finite() {
                 return Err(TrianglesError::NotFinite { triangle, vertex });

@@ -156,22 +156,26 @@ impl<'a> HallWalk<'a> {
         let here = self.scene.medium(&branch.interior);
         let there = self.scene.medium(&beyond);
         let eta = self.index(there) / self.index(here);
-        let mut f_sr = terms.specular_reflectance.as_ref().map_or_else(
-            || eta.map(|eta| dielectric_reflectance(meeting.cos_i, eta)),
-            |table| table.at(self.wavelengths),
-        );
-        let mut f_st = terms
-            .specular_transmittance
-            .as_ref()
-            .map_or_else(|| SampledSpectrum::ONE - f_sr, |table| table.at(self.wavelengths));
+        let own_sr = terms.specular_reflectance.as_ref().map(|table| table.at(self.wavelengths));
+        let own_st = terms.specular_transmittance.as_ref().map(|table| table.at(self.wavelengths));
+        // Total reflection, unless a refracted ray is found.
+        let (mut f_sr, mut f_st) = (SampledSpectrum::ONE, SampledSpectrum::ZERO);
         let mut refracted = Vec::with_capacity(1);
         for lanes in self.groups(branch, here, there) {
-            let eta = self.steering(there, &lanes) / self.steering(here, &lanes);
-            if let Some(wo) = refract(meeting.wi, meeting.normal, eta) {
-                refracted.push((meeting.on_far_side(wo), lanes));
-            } else {
-                lanes.for_each(|j| (f_sr.0[j], f_st.0[j]) = (1.0, 0.0));
+            let steered = self.steering(there, &lanes) / self.steering(here, &lanes);
+            let Some(wo) = refract(meeting.wi, meeting.normal, steered) else {
+                continue;
+            };
+            // Lanes that share directions share them on both sides. At the angle in the thinner
+            // body each has its own reflectance, and none is locked in where the others get out.
+            let outer = if steered < 1.0 { -wo.dot(meeting.normal) } else { meeting.cos_i };
+            for j in lanes.clone() {
+                let contrast = eta.0[j].max(1.0 / eta.0[j]);
+                f_sr.0[j] =
+                    own_sr.map_or_else(|| dielectric_reflectance(outer, contrast), |f| f.0[j]);
+                f_st.0[j] = own_st.map_or(1.0 - f_sr.0[j], |f| f.0[j]);
             }
+            refracted.push((meeting.on_far_side(wo), lanes));
         }
         self.add_highlights(branch, meeting, terms, f_sr, branch.interior, 1.0);
         if !meeting.is_entering() {

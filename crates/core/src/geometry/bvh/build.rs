@@ -33,10 +33,7 @@ pub(super) fn references(vertices: &[[f32; 3]], triangles: &[[u32; 3]]) -> Vec<R
         .enumerate()
         .with_min_len(TASK)
         .map(|(index, corners)| {
-            Reference::new(
-                corners.map(|corner| vertices[corner as usize]),
-                index as u32,
-            )
+            Reference::new(corners.map(|corner| vertices[corner as usize]), index as u32)
         })
         .collect()
 }
@@ -46,14 +43,7 @@ pub(super) fn references(vertices: &[[f32; 3]], triangles: &[[u32; 3]]) -> Vec<R
 /// What is cut where depends on the references alone, not on the number of threads.
 pub(super) fn subtree(references: &mut [Reference]) -> Subtree {
     let extent = Extent::of(references);
-    grow(
-        Set {
-            references,
-            first: 0,
-            extent,
-        },
-        0,
-    )
+    grow(Set { references, first: 0, extent }, 0)
 }
 
 struct Set<'a> {
@@ -75,16 +65,8 @@ impl<'a> Set<'a> {
         };
         let (below, above): (&'a mut _, &'a mut _) = self.references.split_at_mut(middle);
         [
-            Set {
-                references: below,
-                first: self.first,
-                extent: extents[0],
-            },
-            Set {
-                references: above,
-                first: self.first + middle,
-                extent: extents[1],
-            },
+            Set { references: below, first: self.first, extent: extents[0] },
+            Set { references: above, first: self.first + middle, extent: extents[1] },
         ]
     }
 }
@@ -92,20 +74,11 @@ impl<'a> Set<'a> {
 fn grow(set: Set, depth: usize) -> Subtree {
     let (first, len, bounds) = (set.first, set.len(), set.extent.bounds);
     if len <= WIDTH {
-        return Subtree {
-            bounds,
-            first,
-            len,
-            children: Vec::new(),
-            nodes: 0,
-            blocks: 1,
-        };
+        return Subtree { bounds, first, len, children: Vec::new(), nodes: 0, blocks: 1 };
     }
     let sets = cut_in_eight(set, depth >= HALVING_DEPTH);
     let children: Vec<Subtree> = if len >= TASK {
-        sets.into_par_iter()
-            .map(|set| grow(set, depth + 1))
-            .collect()
+        sets.into_par_iter().map(|set| grow(set, depth + 1)).collect()
     } else {
         sets.into_iter().map(|set| grow(set, depth + 1)).collect()
     };

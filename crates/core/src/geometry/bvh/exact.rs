@@ -34,11 +34,7 @@ pub(super) fn cross(probe: &Probe, corners: &[DVec3; 3]) -> Option<Point> {
     let a = shear(seen, probe.shear);
     let b = shear(corners[1] - probe.origin, probe.shear);
     let c = shear(corners[2] - probe.origin, probe.shear);
-    let weights = [
-        c.x * b.y - c.y * b.x,
-        a.x * c.y - a.y * c.x,
-        b.x * a.y - b.y * a.x,
-    ];
+    let weights = [c.x * b.y - c.y * b.x, a.x * c.y - a.y * c.x, b.x * a.y - b.y * a.x];
     let negative = weights[0] < 0.0 || weights[1] < 0.0 || weights[2] < 0.0;
     let positive = weights[0] > 0.0 || weights[1] > 0.0 || weights[2] > 0.0;
     if negative == positive {
@@ -58,18 +54,12 @@ pub(super) fn cross(probe: &Probe, corners: &[DVec3; 3]) -> Option<Point> {
     }
     let nearest = a.z.min(b.z).min(c.z);
     let farthest = a.z.max(b.z).max(c.z);
-    let t = (height / normal.dot(probe.direction))
-        .max(nearest)
-        .min(farthest);
+    let t = (height / normal.dot(probe.direction)).max(nearest).min(farthest);
     (t > 0.0).then_some(Point { t, weights })
 }
 
 /// Turns the ray into the z axis, with z the distance t at which the ray is level with the point.
 #[inline(always)]
 fn shear(point: DVec3, shear: DVec3) -> DVec3 {
-    DVec3::new(
-        point.x - shear.x * point.z,
-        point.y - shear.y * point.z,
-        shear.z * point.z,
-    )
+    DVec3::new(point.x - shear.x * point.z, point.y - shear.y * point.z, shear.z * point.z)
 }

@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-use crate::geometry::ray::Ray;
+use crate::math::Ray;
 
 use super::lanes::Portable;
 use super::{traverse, Tree, TriangleHit};

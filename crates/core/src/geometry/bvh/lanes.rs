@@ -96,8 +96,6 @@ impl Lanes for Portable {
     #[inline(always)]
     fn at_most_in_order(self, other: Self, order: u32) -> u32 {
         let bits = self.at_most(other);
-        (0..WIDTH).fold(0, |ordered, i| {
-            ordered | (bits >> (order >> (3 * i) & 7) & 1) << i
-        })
+        (0..WIDTH).fold(0, |ordered, i| ordered | (bits >> (order >> (3 * i) & 7) & 1) << i)
     }
 }

@@ -52,19 +52,10 @@ pub(super) fn write(
     vertices: &[[f32; 3]],
     triangles: &[[u32; 3]],
 ) -> (Vec<Node>, Vec<Block>, Link) {
-    let source = Source {
-        references,
-        vertices,
-        triangles,
-    };
+    let source = Source { references, vertices, triangles };
     let mut nodes = vec![Node::EMPTY; root.nodes];
     let mut blocks = vec![Block::EMPTY; root.blocks];
-    let target = Target {
-        nodes: &mut nodes,
-        first_node: 0,
-        blocks: &mut blocks,
-        first_block: 0,
-    };
+    let target = Target { nodes: &mut nodes, first_node: 0, blocks: &mut blocks, first_block: 0 };
     let link = fill(root, &source, target);
     (nodes, blocks, link)
 }
@@ -80,10 +71,8 @@ fn fill(subtree: &Subtree, source: &Source, mut target: Target) -> Link {
     let mut children: Vec<&Subtree> = subtree.children.iter().collect();
     children.sort_by_key(|child| child.len);
     let this = target.take(1, 0);
-    let parts: Vec<(&Subtree, Target)> = children
-        .iter()
-        .map(|child| (*child, target.take(child.nodes, child.blocks)))
-        .collect();
+    let parts: Vec<(&Subtree, Target)> =
+        children.iter().map(|child| (*child, target.take(child.nodes, child.blocks))).collect();
     let links = fill_all(parts, source, subtree.nodes >= TASK);
     let link = Link::node(this.first_node);
     if let Some(node) = this.nodes.first_mut() {
@@ -96,17 +85,12 @@ fn fill(subtree: &Subtree, source: &Source, mut target: Target) -> Link {
 fn fill_all(mut parts: Vec<(&Subtree, Target)>, source: &Source, parallel: bool) -> Vec<Link> {
     if parallel && parts.len() > 1 {
         let others = parts.split_off(parts.len() / 2);
-        let (mut links, other_links) = rayon::join(
-            || fill_all(parts, source, true),
-            || fill_all(others, source, true),
-        );
+        let (mut links, other_links) =
+            rayon::join(|| fill_all(parts, source, true), || fill_all(others, source, true));
         links.extend(other_links);
         return links;
     }
-    parts
-        .into_iter()
-        .map(|(child, target)| fill(child, source, target))
-        .collect()
+    parts.into_iter().map(|(child, target)| fill(child, source, target)).collect()
 }
 
 impl Source<'_> {
@@ -127,10 +111,7 @@ impl Source<'_> {
 }
 
 impl Block {
-    const EMPTY: Self = Self {
-        corners: [[[0.0; WIDTH]; 3]; 3],
-        triangles: [0; WIDTH],
-    };
+    const EMPTY: Self = Self { corners: [[[0.0; WIDTH]; 3]; 3], triangles: [0; WIDTH] };
 }
 
 impl Node {

@@ -19,7 +19,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::ray::Ray;
+use crate::math::Ray;
 
 mod build;
 mod exact;
@@ -135,13 +135,7 @@ impl Tree {
         let mut references = build::references(vertices, triangles);
         let subtree = build::subtree(&mut references);
         let (nodes, blocks, root) = layout::write(&subtree, &references, vertices, triangles);
-        Self {
-            nodes,
-            blocks,
-            root,
-            frame: Frame::new(centre, half_extent),
-            kernel: Kernel::best(),
-        }
+        Self { nodes, blocks, root, frame: Frame::new(centre, half_extent), kernel: Kernel::best() }
     }
 
     pub fn kernel(&self) -> Kernel {
@@ -185,11 +179,7 @@ impl Block {
     /// The corners of a triangle, with their coordinates in the order of `axes`.
     #[inline(always)]
     fn corners(&self, lane: usize, axes: [usize; 3]) -> [DVec3; 3] {
-        [
-            self.corner(0, lane, axes),
-            self.corner(1, lane, axes),
-            self.corner(2, lane, axes),
-        ]
+        [self.corner(0, lane, axes), self.corner(1, lane, axes), self.corner(2, lane, axes)]
     }
 
     #[inline(always)]

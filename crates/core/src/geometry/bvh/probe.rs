@@ -3,7 +3,7 @@
 
 use glam::{DVec3, Vec3A, Vec3Swizzles};
 
-use crate::geometry::ray::Ray;
+use crate::math::Ray;
 
 /// Half the spacing of `f32` at one: the relative error of one rounding.
 const U: f32 = f32::EPSILON / 2.0;
@@ -164,10 +164,7 @@ fn clip(origin: DVec3, direction: DVec3, half_extent: DVec3) -> Option<f64> {
     if origin.abs().cmple(half_extent).all() {
         return Some(0.0);
     }
-    let direction = direction
-        .abs()
-        .max(DVec3::splat(1e-300))
-        .copysign(direction);
+    let direction = direction.abs().max(DVec3::splat(1e-300)).copysign(direction);
     let a = (-half_extent - origin) / direction;
     let b = (half_extent - origin) / direction;
     let (near, far) = (a.min(b), a.max(b));

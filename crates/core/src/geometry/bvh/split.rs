@@ -20,25 +20,16 @@ pub(super) struct Bounds {
 }
 
 impl Bounds {
-    pub const EMPTY: Self = Self {
-        lo: Vec4::INFINITY,
-        hi: Vec4::NEG_INFINITY,
-    };
+    pub const EMPTY: Self = Self { lo: Vec4::INFINITY, hi: Vec4::NEG_INFINITY };
 
     #[inline(always)]
     pub fn union(self, other: Self) -> Self {
-        Self {
-            lo: self.lo.min(other.lo),
-            hi: self.hi.max(other.hi),
-        }
+        Self { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi) }
     }
 
     #[inline(always)]
     fn with(self, point: Vec4) -> Self {
-        Self {
-            lo: self.lo.min(point),
-            hi: self.hi.max(point),
-        }
+        Self { lo: self.lo.min(point), hi: self.hi.max(point) }
     }
 
     /// Half the surface; 0 for an empty box.
@@ -55,13 +46,10 @@ pub(super) struct Reference(Bounds);
 
 impl Reference {
     pub fn new(corners: [[f32; 3]; 3], triangle: u32) -> Self {
-        let bounds = corners.iter().fold(Bounds::EMPTY, |bounds, &[x, y, z]| {
-            bounds.with(Vec4::new(x, y, z, 0.0))
-        });
-        Self(Bounds {
-            lo: bounds.lo,
-            hi: bounds.hi.truncate().extend(f32::from_bits(triangle)),
-        })
+        let bounds = corners
+            .iter()
+            .fold(Bounds::EMPTY, |bounds, &[x, y, z]| bounds.with(Vec4::new(x, y, z, 0.0)));
+        Self(Bounds { lo: bounds.lo, hi: bounds.hi.truncate().extend(f32::from_bits(triangle)) })
     }
 
     #[inline(always)]
@@ -83,10 +71,7 @@ pub(super) struct Extent {
 }
 
 impl Extent {
-    const EMPTY: Self = Self {
-        bounds: Bounds::EMPTY,
-        centroids: Bounds::EMPTY,
-    };
+    const EMPTY: Self = Self { bounds: Bounds::EMPTY, centroids: Bounds::EMPTY };
 
     pub fn of(references: &[Reference]) -> Self {
         references.iter().fold(Self::EMPTY, Self::with)
@@ -117,11 +102,7 @@ impl Grid {
             origin: centroids.lo,
             // A little less than `bins`, so that the upper end falls into the last bin; an axis
             // without size has one bin.
-            scale: Vec4::select(
-                size.cmpgt(Vec4::ZERO),
-                bins as f32 * 0.999_99 / size,
-                Vec4::ZERO,
-            ),
+            scale: Vec4::select(size.cmpgt(Vec4::ZERO), bins as f32 * 0.999_99 / size, Vec4::ZERO),
             bins,
         }
     }
@@ -142,10 +123,7 @@ struct Bin {
 type Histogram = [[Bin; BINS]; 3];
 
 fn histogram(references: &[Reference], grid: &Grid) -> Histogram {
-    let empty = Bin {
-        bounds: Bounds::EMPTY,
-        count: 0,
-    };
+    let empty = Bin { bounds: Bounds::EMPTY, count: 0 };
     let mut bins = [[empty; BINS]; 3];
     for reference in references {
         let at = grid.bin(reference);
@@ -191,11 +169,7 @@ fn cheapest_cut(histogram: &Histogram, bins: usize) -> Option<Cut> {
         for i in (1..bins).rev() {
             bounds = bounds.union(row[i].bounds);
             count += row[i].count;
-            above[i] = if count == 0 {
-                f32::INFINITY
-            } else {
-                cost(bounds, count)
-            };
+            above[i] = if count == 0 { f32::INFINITY } else { cost(bounds, count) };
         }
         let (mut bounds, mut count) = (Bounds::EMPTY, 0);
         for i in 1..bins {
@@ -246,9 +220,7 @@ pub(super) fn in_half(references: &mut [Reference], extent: &Extent) -> (usize, 
     let middle = references.len() / 2;
     references.select_nth_unstable_by(middle, |a, b| {
         let key = |reference: &Reference| reference.doubled_centroid()[axis];
-        key(a)
-            .total_cmp(&key(b))
-            .then(a.triangle().cmp(&b.triangle()))
+        key(a).total_cmp(&key(b)).then(a.triangle().cmp(&b.triangle()))
     });
     let (first, second) = references.split_at(middle);
     (middle, [Extent::of(first), Extent::of(second)])

@@ -12,9 +12,8 @@ fn sheet(n: u32) -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
         }
     }
     let quads = (0..n * n).map(|i| i / n * (n + 1) + i % n);
-    let triangles = quads
-        .flat_map(|a| [[a, a + 1, a + n + 2], [a, a + n + 2, a + n + 1]])
-        .collect();
+    let triangles =
+        quads.flat_map(|a| [[a, a + 1, a + n + 2], [a, a + n + 2, a + n + 1]]).collect();
     (vertices, triangles)
 }
 
@@ -33,10 +32,7 @@ fn census(tree: &Tree, link: Link, counts: &mut [u32]) -> usize {
     }
     let node = &tree.nodes[link.node_index()];
     let used = (0..WIDTH).filter(|&slot| node.bounds[0][slot] <= node.bounds[1][slot]);
-    1 + used
-        .map(|slot| census(tree, node.children[slot], counts))
-        .max()
-        .unwrap()
+    1 + used.map(|slot| census(tree, node.children[slot], counts)).max().unwrap()
 }
 
 #[test]
@@ -44,10 +40,7 @@ fn the_number_of_threads_does_not_change_the_tree() {
     let mesh = sheet(200);
     let reference = build(&mesh);
     for threads in [1, 2, 7] {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let tree = pool.install(|| build(&mesh));
         assert!(tree.nodes == reference.nodes && tree.blocks == reference.blocks);
     }
@@ -71,9 +64,8 @@ fn a_triangle_takes_at_most_120_bytes() {
 #[test]
 fn no_mesh_makes_the_tree_too_deep() {
     let shrinking = |i: u32| 0.5_f32.powi(i as i32 % 120);
-    let spread: Vec<[f32; 3]> = (0..30_000)
-        .map(|i| [shrinking(i), 1.5 * shrinking(i), 0.0])
-        .collect();
+    let spread: Vec<[f32; 3]> =
+        (0..30_000).map(|i| [shrinking(i), 1.5 * shrinking(i), 0.0]).collect();
     let triangles: Vec<[u32; 3]> = (0..10_000).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     let piled = vec![[1.0, 2.0, 3.0]; 30_000];
     for vertices in [spread, piled] {
@@ -97,14 +89,9 @@ fn an_octant_orders_children_from_near_to_far() {
                 })
                 .sum()
         };
-        let slots: Vec<usize> = (0..WIDTH)
-            .map(|i| (order >> (3 * i) & 7) as usize)
-            .collect();
-        let used: Vec<f32> = slots
-            .iter()
-            .map(|&slot| distance(slot))
-            .filter(|d| d.is_finite())
-            .collect();
+        let slots: Vec<usize> = (0..WIDTH).map(|i| (order >> (3 * i) & 7) as usize).collect();
+        let used: Vec<f32> =
+            slots.iter().map(|&slot| distance(slot)).filter(|d| d.is_finite()).collect();
         assert!(used.len() > 1 && used.is_sorted());
     }
 }

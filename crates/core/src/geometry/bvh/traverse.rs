@@ -5,7 +5,7 @@ use std::mem::MaybeUninit;
 
 use glam::DVec3;
 
-use crate::geometry::ray::Ray;
+use crate::math::Ray;
 
 use super::lanes::Lanes;
 use super::{exact, Block, Link, Node, Probe, Tree, TriangleHit, MAX_DEPTH, WIDTH};
@@ -27,13 +27,7 @@ impl Crossing {
     /// None yet.
     #[inline(always)]
     fn none(t_max: f64) -> Self {
-        Self {
-            t: t_max,
-            triangle: 0,
-            block: None,
-            lane: 0,
-            weights: [0.0; 3],
-        }
+        Self { t: t_max, triangle: 0, block: None, lane: 0, weights: [0.0; 3] }
     }
 
     #[inline(always)]
@@ -41,13 +35,7 @@ impl Crossing {
         let block = &tree.blocks[self.block? as usize];
         let corners = block.corners(self.lane as usize, [0, 1, 2]);
         let found = (self.t, self.triangle);
-        Some(TriangleHit::new(
-            found,
-            direction,
-            corners,
-            self.weights,
-            &tree.frame,
-        ))
+        Some(TriangleHit::new(found, direction, corners, self.weights, &tree.frame))
     }
 }
 
@@ -83,11 +71,7 @@ struct Spread<L> {
 
 #[inline(always)]
 fn splat3<L: Lanes>(values: [f32; 3]) -> [L; 3] {
-    [
-        L::splat(values[0]),
-        L::splat(values[1]),
-        L::splat(values[2]),
-    ]
+    [L::splat(values[0]), L::splat(values[1]), L::splat(values[2])]
 }
 
 /// x₁y₂ − y₁x₂
@@ -141,14 +125,9 @@ impl<L: Lanes> Spread<L> {
     /// Where the ray enters the children's boxes, and where it leaves them or ends.
     #[inline(always)]
     fn boxes(&self, node: &Node, limit: L) -> (L, L) {
-        let enter = self
-            .near(node, 0)
-            .max(self.near(node, 1))
-            .max(self.near(node, 2).max(L::splat(0.0)));
-        let leave = self
-            .far(node, 0)
-            .min(self.far(node, 1))
-            .min(self.far(node, 2).min(limit));
+        let enter =
+            self.near(node, 0).max(self.near(node, 1)).max(self.near(node, 2).max(L::splat(0.0)));
+        let leave = self.far(node, 0).min(self.far(node, 1)).min(self.far(node, 2).min(limit));
         (enter, leave)
     }
 
@@ -267,10 +246,8 @@ pub(super) fn any<L: Lanes>(tree: &Tree, ray: &Ray) -> bool {
                 while hits != 0 {
                     let last = hits.ilog2();
                     hits ^= 1 << last;
-                    stack[height].write(Pending {
-                        link: node.children[last as usize % WIDTH],
-                        near: 0.0,
-                    });
+                    stack[height]
+                        .write(Pending { link: node.children[last as usize % WIDTH], near: 0.0 });
                     height += 1;
                 }
                 link = node.children[first];

@@ -16,7 +16,7 @@ use std::arch::x86_64::{
     _mm256_srlv_epi32, _mm256_storeu_ps, _mm256_sub_ps, _CMP_LE_OQ,
 };
 
-use crate::geometry::ray::Ray;
+use crate::math::Ray;
 
 use super::lanes::Lanes;
 use super::{traverse, Tree, TriangleHit, WIDTH};
@@ -115,9 +115,7 @@ lanes_of_256_bits!(
     |a, b| _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(a, b)) as u32,
     |a, b, order| {
         let at_most = _mm256_castps_si256(_mm256_cmp_ps::<_CMP_LE_OQ>(a, b));
-        _mm256_movemask_ps(_mm256_castsi256_ps(_mm256_permutevar8x32_epi32(
-            at_most, order,
-        ))) as u32
+        _mm256_movemask_ps(_mm256_castsi256_ps(_mm256_permutevar8x32_epi32(at_most, order))) as u32
     }
 );
 
@@ -153,9 +151,4 @@ macro_rules! entry_points {
 }
 
 entry_points!(closest_avx2, any_avx2, Avx2, "avx2,fma,bmi1,lzcnt");
-entry_points!(
-    closest_avx512,
-    any_avx512,
-    Avx512,
-    "avx512f,avx512vl,avx2,fma,bmi1,lzcnt"
-);
+entry_points!(closest_avx512, any_avx512, Avx512, "avx512f,avx512vl,avx2,fma,bmi1,lzcnt");

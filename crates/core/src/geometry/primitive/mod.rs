@@ -13,8 +13,8 @@ mod sphere;
 
 use thiserror::Error;
 
-use super::ray::{Ray, SurfacePoint};
-use crate::math::{gamma, largest_component, DAffine3, DMat3, DVec3};
+use super::surface_point::SurfacePoint;
+use crate::math::{gamma, largest_component, DAffine3, DMat3, DVec3, Ray};
 
 pub use cone::Cone;
 pub use cylinder::Cylinder;

@@ -34,11 +34,7 @@ impl Random {
 }
 
 fn ray(origin: DVec3, direction: DVec3) -> Ray {
-    Ray {
-        origin,
-        direction,
-        t_max: f64::INFINITY,
-    }
+    Ray { origin, direction, t_max: f64::INFINITY }
 }
 
 fn towards(origin: DVec3, target: DVec3) -> Ray {
@@ -60,11 +56,7 @@ fn icosphere(subdivisions: usize) -> Mesh {
     let g = f64::midpoint(1.0, 5.0_f64.sqrt());
     let mut points = Vec::new();
     for (a, b) in [(1.0, g), (1.0, -g), (-1.0, g), (-1.0, -g)] {
-        points.extend([
-            DVec3::new(0.0, a, b),
-            DVec3::new(a, b, 0.0),
-            DVec3::new(b, 0.0, a),
-        ]);
+        points.extend([DVec3::new(0.0, a, b), DVec3::new(a, b, 0.0), DVec3::new(b, 0.0, a)]);
     }
     let edge = 2.0 + 1e-9;
     let near = |i: usize, j: usize| points[i].distance(points[j]) < edge;
@@ -73,10 +65,8 @@ fn icosphere(subdivisions: usize) -> Mesh {
         for j in i + 1..12 {
             for k in j + 1..12 {
                 if near(i, j) && near(j, k) && near(i, k) {
-                    let outward = (points[j] - points[i])
-                        .cross(points[k] - points[i])
-                        .dot(points[i])
-                        > 0.0;
+                    let outward =
+                        (points[j] - points[i]).cross(points[k] - points[i]).dot(points[i]) > 0.0;
                     let [j, k] = if outward { [j, k] } else { [k, j] };
                     faces.push([i as u32, j as u32, k as u32]);
                 }
@@ -101,13 +91,7 @@ fn icosphere(subdivisions: usize) -> Mesh {
             *point = point.normalize();
         }
     }
-    (
-        points
-            .iter()
-            .map(|point| point.normalize().to_array())
-            .collect(),
-        faces,
-    )
+    (points.iter().map(|point| point.normalize().to_array()).collect(), faces)
 }
 
 /// A closed lens of 2 × 2, about 0.05 thick, with pillows on its inner side; `n` squares along each
@@ -152,10 +136,7 @@ const PLACES: [(f64, f64); 3] = [(50.0, 0.0), (50e3, 0.0), (50.0, 1e6)];
 fn seams((vertices, triangles): &Mesh) -> Vec<DVec3> {
     let mut random = Random(7);
     let point = |i: u32| DVec3::from_array(vertices[i as usize]);
-    let mut seams: Vec<DVec3> = vertices
-        .iter()
-        .map(|&vertex| DVec3::from_array(vertex))
-        .collect();
+    let mut seams: Vec<DVec3> = vertices.iter().map(|&vertex| DVec3::from_array(vertex)).collect();
     for &[i, j, _] in triangles {
         seams.push((point(i) + point(j)) / 2.0);
         seams.push(point(i).lerp(point(j), f64::midpoint(random.signed(), 1.0)));
@@ -167,11 +148,8 @@ fn seams((vertices, triangles): &Mesh) -> Vec<DVec3> {
 fn lost_rays(mesh: &Mesh, inside: &[DVec3]) -> usize {
     let triangles = build(mesh);
     let seams = seams(mesh);
-    let rays = inside
-        .iter()
-        .flat_map(|&from| seams.iter().map(move |&to| towards(from, to)));
-    rays.filter(|ray| triangles.closest_hit(ray).is_none() || !triangles.any_hit(ray))
-        .count()
+    let rays = inside.iter().flat_map(|&from| seams.iter().map(move |&to| towards(from, to)));
+    rays.filter(|ray| triangles.closest_hit(ray).is_none() || !triangles.any_hit(ray)).count()
 }
 
 #[test]
@@ -180,11 +158,7 @@ fn no_ray_leaves_a_sphere_through_an_edge_or_a_vertex() {
         let mesh = placed(icosphere(5), scale, offset);
         let mut random = Random(1);
         let inside = [0; 8].map(|_| DVec3::splat(offset) + random.vector() * 0.5 * scale);
-        assert_eq!(
-            lost_rays(&mesh, &inside),
-            0,
-            "scale {scale}, offset {offset}"
-        );
+        assert_eq!(lost_rays(&mesh, &inside), 0, "scale {scale}, offset {offset}");
     }
 }
 
@@ -195,11 +169,7 @@ fn no_ray_leaves_a_thin_lens_through_an_edge_or_a_vertex() {
         let inside = [(0.0, 0.0), (0.31, -0.47), (-0.9, 0.83)].map(|(x, y)| {
             DVec3::new(x, y, -0.2 * (x * x + y * y) - 0.025) * scale + DVec3::splat(offset)
         });
-        assert_eq!(
-            lost_rays(&mesh, &inside),
-            0,
-            "scale {scale}, offset {offset}"
-        );
+        assert_eq!(lost_rays(&mesh, &inside), 0, "scale {scale}, offset {offset}");
     }
 }
 
@@ -229,10 +199,7 @@ fn a_ray_that_leaves_a_surface_does_not_meet_it_again() {
                     );
                     let inside = ray(hit.position - hit.normal * hit.error, -outward);
                     let next = sphere.closest_hit(&inside).unwrap();
-                    assert_ne!(
-                        next.triangle, hit.triangle,
-                        "scale {scale}, offset {offset}"
-                    );
+                    assert_ne!(next.triangle, hit.triangle, "scale {scale}, offset {offset}");
                 }
             }
         }
@@ -243,18 +210,11 @@ fn a_ray_that_leaves_a_surface_does_not_meet_it_again() {
 /// more digits.
 fn sliver(random: &mut Random) -> [DVec3; 3] {
     let along = random.direction() * 50.0;
-    [
-        along,
-        -along + random.vector() * 1e-3,
-        random.vector() * 1e-3,
-    ]
+    [along, -along + random.vector() * 1e-3, random.vector() * 1e-3]
 }
 
 fn alone(corners: [DVec3; 3]) -> Triangles {
-    build(&(
-        corners.map(|corner| corner.to_array()).to_vec(),
-        vec![[0, 1, 2]],
-    ))
+    build(&(corners.map(|corner| corner.to_array()).to_vec(), vec![[0, 1, 2]]))
 }
 
 #[test]
@@ -269,17 +229,12 @@ fn a_ray_that_leaves_a_sliver_does_not_meet_it_again() {
         else {
             continue;
         };
-        let along = (corners[1] - corners[0])
-            .reject_from_normalized(hit.normal)
-            .normalize();
+        let along = (corners[1] - corners[0]).reject_from_normalized(hit.normal).normalize();
         for side in [1.0, -1.0] {
             let away = side * hit.normal;
             let origin = hit.position + hit.error * away;
             for direction in [away, along + 1e-9 * away, random.direction() + 1.01 * away] {
-                assert_eq!(
-                    triangle.closest_hit(&ray(origin, direction.normalize())),
-                    None
-                );
+                assert_eq!(triangle.closest_hit(&ray(origin, direction.normalize())), None);
             }
         }
     }
@@ -293,9 +248,8 @@ fn an_edge_on_triangle_is_hit_on_itself() {
         let corners = [0; 3].map(|_| random.vector().as_vec3().as_dvec3());
         let triangle = alone(corners);
         let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
-        let direction = (corners[1] - corners[0])
-            .lerp(corners[2] - corners[0], random.signed())
-            .normalize();
+        let direction =
+            (corners[1] - corners[0]).lerp(corners[2] - corners[0], random.signed()).normalize();
         if let Some(hit) = triangle.closest_hit(&ray(middle - 5.0 * direction, direction)) {
             hits += 1;
             assert!((hit.t - 5.0).abs() < 3.5, "{}", hit.t);
@@ -308,29 +262,17 @@ fn an_edge_on_triangle_is_hit_on_itself() {
 fn a_film_of_ten_micrometres_one_metre_from_the_origin_is_resolved() {
     // Two sheets at x = 1000 and 1000.01 mm, and a triangle at the origin that moves the centre
     // away from them.
-    let sheet = |x: f64| {
-        [
-            [x, -50.0, -50.0],
-            [x, 50.0, -50.0],
-            [x, 50.0, 50.0],
-            [x, -50.0, 50.0],
-        ]
-    };
+    let sheet = |x: f64| [[x, -50.0, -50.0], [x, 50.0, -50.0], [x, 50.0, 50.0], [x, -50.0, 50.0]];
     let mut vertices = [sheet(1000.0), sheet(1000.01)].concat();
     vertices.extend([[0.0, 0.0, 200.0], [1.0, 0.0, 200.0], [0.0, 1.0, 200.0]]);
-    let film = build(&(
-        vertices,
-        vec![[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7], [8, 9, 10]],
-    ));
+    let film = build(&(vertices, vec![[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7], [8, 9, 10]]));
     let mut random = Random(5);
     for _ in 0..1 << 14 {
         let target = DVec3::new(1000.0, random.signed() * 49.0, random.signed() * 49.0);
         let first = film.closest_hit(&towards(DVec3::ZERO, target)).unwrap();
         let direction = (target + random.vector() * 300.0).normalize();
-        let onward = ray(
-            first.position + first.error * direction.signum().x * first.normal,
-            direction,
-        );
+        let onward =
+            ray(first.position + first.error * direction.signum().x * first.normal, direction);
         let second = film.closest_hit(&onward).unwrap();
         assert!(first.triangle < 2 && (2..4).contains(&second.triangle));
         // The sheets' positions are rounded to single precision: 500 mm from the centre, by up to
@@ -355,10 +297,7 @@ fn all_kernels_give_the_same_hits_bit_for_bit() {
                 assert_eq!(triangles.closest_hit(&ray), reference.closest_hit(&ray));
                 ray.t_max = 60.0;
                 assert_eq!(triangles.any_hit(&ray), reference.any_hit(&ray));
-                assert_eq!(
-                    triangles.any_hit(&ray),
-                    reference.closest_hit(&ray).is_some()
-                );
+                assert_eq!(triangles.any_hit(&ray), reference.closest_hit(&ray).is_some());
             }
         }
     }
@@ -401,10 +340,7 @@ fn the_closest_hit_is_what_an_exhaustive_search_finds() {
         let ray = ray(random.vector() * 100.0, random.direction());
         let found = triangles.closest_hit(&ray);
         let expected = exhaustive(&soup, &ray);
-        assert_eq!(
-            found.map(|hit| hit.triangle),
-            expected.map(|(_, triangle)| triangle)
-        );
+        assert_eq!(found.map(|hit| hit.triangle), expected.map(|(_, triangle)| triangle));
         assert_eq!(triangles.any_hit(&ray), expected.is_some());
         if let (Some(found), Some((t, _))) = (found, expected) {
             hits += 1;
@@ -423,12 +359,8 @@ fn a_camera_may_be_a_thousand_kilometres_away() {
     for _ in 0..2_000 {
         let target = random.vector() * 0.5;
         let direction = random.direction();
-        let near = sphere
-            .closest_hit(&ray(target - direction * 2.0, direction))
-            .unwrap();
-        let far = sphere
-            .closest_hit(&ray(target - direction * 1e9, direction))
-            .unwrap();
+        let near = sphere.closest_hit(&ray(target - direction * 2.0, direction)).unwrap();
+        let far = sphere.closest_hit(&ray(target - direction * 1e9, direction)).unwrap();
         // 10⁹ mm in double precision: steps of 10⁻⁷ mm.
         assert!(near.position.distance(far.position) < 2e-6);
         assert!((far.t - near.t - (1e9 - 2.0)).abs() < 2e-6);
@@ -438,53 +370,31 @@ fn a_camera_may_be_a_thousand_kilometres_away() {
 #[test]
 fn rays_along_the_axes_meet_flat_meshes() {
     let flat = (
-        vec![
-            [0.0, 0.0, 5.0],
-            [4.0, 0.0, 5.0],
-            [4.0, 4.0, 5.0],
-            [0.0, 4.0, 5.0],
-        ],
+        vec![[0.0, 0.0, 5.0], [4.0, 0.0, 5.0], [4.0, 4.0, 5.0], [0.0, 4.0, 5.0]],
         vec![[0, 1, 2], [0, 2, 3]],
     );
     let square = build(&flat);
     for (x, y) in [(1.0, 2.0), (2.0, 2.0), (0.0, 0.0), (4.0, 3.0)] {
-        let hit = square
-            .closest_hit(&ray(DVec3::new(x, y, 0.0), DVec3::Z))
-            .unwrap();
+        let hit = square.closest_hit(&ray(DVec3::new(x, y, 0.0), DVec3::Z)).unwrap();
         assert_eq!(hit.t, 5.0);
         assert_eq!(hit.position, DVec3::new(x, y, 5.0));
         assert_eq!(hit.normal, DVec3::Z);
     }
     // In the plane, beside the square, away from it, and no rays at all.
-    assert_eq!(
-        square.closest_hit(&ray(DVec3::new(-1.0, 1.0, 5.0), DVec3::X)),
-        None
-    );
-    assert_eq!(
-        square.closest_hit(&ray(DVec3::new(5.0, 1.0, 0.0), DVec3::Z)),
-        None
-    );
+    assert_eq!(square.closest_hit(&ray(DVec3::new(-1.0, 1.0, 5.0), DVec3::X)), None);
+    assert_eq!(square.closest_hit(&ray(DVec3::new(5.0, 1.0, 0.0), DVec3::Z)), None);
     assert_eq!(square.closest_hit(&ray(DVec3::ONE, -DVec3::Z)), None);
     assert_eq!(square.closest_hit(&ray(DVec3::ONE, DVec3::NAN)), None);
     assert_eq!(square.closest_hit(&ray(DVec3::ONE, DVec3::ZERO)), None);
-    assert_eq!(
-        square.closest_hit(&ray(DVec3::splat(f64::NAN), DVec3::Z)),
-        None
-    );
+    assert_eq!(square.closest_hit(&ray(DVec3::splat(f64::NAN), DVec3::Z)), None);
 }
 
 #[test]
 fn a_hit_counts_only_before_the_end_of_the_ray() {
-    let triangle = build(&(
-        vec![[0.0, 0.0, 5.0], [4.0, 0.0, 5.0], [0.0, 4.0, 5.0]],
-        vec![[0, 1, 2]],
-    ));
+    let triangle =
+        build(&(vec![[0.0, 0.0, 5.0], [4.0, 0.0, 5.0], [0.0, 4.0, 5.0]], vec![[0, 1, 2]]));
     for (t_max, expected) in [(4.999, false), (5.0, false), (5.001, true)] {
-        let ray = Ray {
-            origin: DVec3::new(1.0, 1.0, 0.0),
-            direction: DVec3::Z,
-            t_max,
-        };
+        let ray = Ray { origin: DVec3::new(1.0, 1.0, 0.0), direction: DVec3::Z, t_max };
         assert_eq!(triangle.closest_hit(&ray).is_some(), expected);
         assert_eq!(triangle.any_hit(&ray), expected);
     }
@@ -496,9 +406,7 @@ fn of_triangles_at_the_same_distance_the_first_is_hit() {
     let twice = build(&(vertices, [faces.clone(), faces.clone()].concat()));
     let mut random = Random(31);
     for _ in 0..2_000 {
-        let hit = twice
-            .closest_hit(&ray(DVec3::ZERO, random.direction()))
-            .unwrap();
+        let hit = twice.closest_hit(&ray(DVec3::ZERO, random.direction())).unwrap();
         assert!((hit.triangle as usize) < faces.len());
     }
 }
@@ -509,9 +417,7 @@ fn barycentric_weights_give_the_position_back() {
     let sphere = build(&mesh);
     let mut random = Random(19);
     for _ in 0..1_000 {
-        let hit = sphere
-            .closest_hit(&ray(DVec3::splat(4.0), random.direction()))
-            .unwrap();
+        let hit = sphere.closest_hit(&ray(DVec3::splat(4.0), random.direction())).unwrap();
         let [a, b, c] =
             mesh.1[hit.triangle as usize].map(|i| DVec3::from_array(mesh.0[i as usize]));
         let [u, v] = hit.barycentric;
@@ -524,27 +430,10 @@ fn barycentric_weights_give_the_position_back() {
 #[test]
 fn triangles_that_cannot_be_used_are_refused() {
     let vertices = [[0.0; 3], [1.0; 3], [f64::NAN; 3], [1e13, 0.0, 0.0]];
-    let fault = |triangle| {
-        Triangles::build(&vertices, &[[0, 0, 1], triangle])
-            .err()
-            .unwrap()
-    };
+    let fault = |triangle| Triangles::build(&vertices, &[[0, 0, 1], triangle]).err().unwrap();
     let (triangle, vertices) = (1, 4);
-    assert_eq!(
-        fault([0, 1, 4]),
-        TrianglesError::NoSuchVertex {
-            triangle,
-            vertex: 4,
-            vertices
-        }
-    );
-    assert_eq!(
-        fault([0, 1, 2]),
-        TrianglesError::NotFinite {
-            triangle,
-            vertex: 2
-        }
-    );
+    assert_eq!(fault([0, 1, 4]), TrianglesError::NoSuchVertex { triangle, vertex: 4, vertices });
+    assert_eq!(fault([0, 1, 2]), TrianglesError::NotFinite { triangle, vertex: 2 });
     assert_eq!(fault([0, 1, 3]), TrianglesError::TooLarge { extent: 1e13 });
     for kernel in [Kernel::Portable, Kernel::Avx2, Kernel::Avx512] {
         let one = build(&(vec![[0.0; 3], [1.0; 3]], vec![[0, 1, 1]]));

@@ -2,7 +2,6 @@
 //! [`SurfacePoint`]: where a ray ends on a surface.
 
 use crate::math::DVec3;
-pub use crate::math::Ray;
 
 /// A point on a surface, with what the next ray needs to leave it on the right side.
 #[derive(Clone, Copy, Debug, PartialEq)]

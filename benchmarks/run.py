@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: Apache-2.0 OR MIT
+"""`make bench`: how fast Lamplit is, in ratios measured side by side in one run.
+
+Writes ``benchmarks/results/``: ``bench.json`` with all numbers and the machine's name, ``bench.md``
+as a table, ``kernel.png`` as a picture. Takes a few minutes; leave the machine alone meanwhile.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import platform
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Literal
+
+import kernel
+import numpy as np
+import numpy.typing as npt
+
+import lamplit as ll
+from lamplit.lamps import write_lamp
+
+HERE = Path(__file__).resolve().parent
+RESULTS = HERE / "results"
+ROUNDS = 5
+
+
+def main() -> None:
+    """Run every measurement and write the results."""
+    parser = argparse.ArgumentParser(description="how fast Lamplit is")
+    parser.add_argument("--triangles", type=int, nargs="*", default=[100_000, 1_000_000, 5_000_000])
+    options = parser.parse_args()
+    build = "cargo build --release --locked --quiet --package lamplit-core --example ray_kernel"
+    subprocess.run(build.split(), check=True)
+    results: dict[str, Any] = {"machine": machine(), "version": ll.__version__}
+    results["kernel"] = [measure_kernel(count) for count in options.triangles]
+    results["hall"] = measure_hall()
+    results["help_s"] = measure_help()
+    RESULTS.mkdir(exist_ok=True)
+    (RESULTS / "bench.json").write_text(json.dumps(results, indent=2) + "\n", encoding="utf-8")
+    page = as_markdown(results)
+    (RESULTS / "bench.md").write_text(page, encoding="utf-8")
+    draw_kernel(results["kernel"], RESULTS / "kernel.png")
+    print(page)
+    print(f"written to {RESULTS}: bench.json, bench.md, kernel.png")
+
+
+def machine() -> dict[str, Any]:
+    """Return what the numbers were measured on."""
+    lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
+    rust = subprocess.run(["rustc", "--version"], check=True, capture_output=True, text=True)
+    return {
+        "processor": names[0] if names else platform.processor(),
+        "cores": os.cpu_count(),
+        "load_before": round(os.getloadavg()[0], 2),
+        "system": platform.platform(),
+        "rust": rust.stdout.strip(),
+        "python": platform.python_version(),
+    }
+
+
+def lamp_scene(folder: Path, triangles: int) -> ll.Scene:
+    """Return the p21w lamp at about this many triangles."""
+    return ll.load_scene(write_lamp("p21w", folder, {"triangles": triangles}))
+
+
+def whole_lamp(scene: ll.Scene) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.uint32]]:
+    """Return the meshes of a scene as one: vertices (n, 3) in mm and triangles (m, 3)."""
+    vertices: list[npt.NDArray[np.float64]] = []
+    triangles: list[npt.NDArray[np.uint32]] = []
+    count = 0
+    for thing in scene.resolved_objects():
+        if thing.mesh is not None:
+            vertices.append(thing.mesh.vertices_mm)
+            triangles.append(thing.mesh.triangles + np.uint32(count))
+            count += len(thing.mesh.vertices_mm)
+    return np.concatenate(vertices), np.concatenate(triangles)
+
+
+def measure_kernel(triangles: int) -> dict[str, Any]:
+    """Compare the BVH with Embree on rays recorded in the p21w lamp, one thread (S4, S5)."""
+    options = argparse.Namespace(
+        rays=300_000,
+        rounds=3,
+        ray_kernel=HERE.parent / "target" / "release" / "examples" / "ray_kernel",
+    )
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        mesh = whole_lamp(lamp_scene(folder / "lamp", triangles))
+        return kernel.measure(f"p21w, {len(mesh[1])} triangles", mesh, options, folder)
+
+
+def measure_hall() -> dict[str, Any]:
+    """Time the founding method on the p21w lamp: rays/s, spectra against RGB, two threads."""
+    with tempfile.TemporaryDirectory() as name:
+        scene = lamp_scene(Path(name) / "lamp", 400_000)
+        small = scene.changed(image=scene.image.model_copy(update={"width": 160, "height": 100}))
+
+        def trace_s(colour: Literal["spectral", "rgb"], threads: int) -> tuple[float, int]:
+            done = ll.render(small, colour=colour, samples=4, threads=threads).statistics
+            return done["trace_s"], done["eye_rays"] + done["shadow_rays"]
+
+        spectral = alternate(lambda: trace_s("spectral", 1), lambda: trace_s("rgb", 1))
+        threads = alternate(lambda: trace_s("spectral", 1), lambda: trace_s("spectral", 2))
+        seconds, rays = trace_s("spectral", 2)
+    return {
+        "rays_per_s": round(rays / seconds),
+        "spectral_over_rgb_time_per_ray": round(spectral, 3),
+        "speed_up_of_two_threads": round(threads, 3),
+    }
+
+
+def alternate(
+    one: Callable[[], tuple[float, int]], other: Callable[[], tuple[float, int]]
+) -> float:
+    """Return the median over rounds of one's time per ray over the other's, run in turn."""
+    ratios: list[float] = []
+    for _ in range(ROUNDS):
+        (time_one, rays_one), (time_other, rays_other) = one(), other()
+        ratios.append((time_one / rays_one) / (time_other / rays_other))
+    return statistics.median(ratios)
+
+
+def measure_help() -> float:
+    """Return the median time of `lamplit --help` in seconds (S9)."""
+    times: list[float] = []
+    for _ in range(ROUNDS):
+        start = time.perf_counter()
+        command = [sys.executable, "-m", "lamplit.cli", "--help"]
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+        times.append(time.perf_counter() - start)
+    return round(statistics.median(times), 3)
+
+
+def as_markdown(results: dict[str, Any]) -> str:
+    """Return the results as tables."""
+    about, hall = results["machine"], results["hall"]
+    load, cores = about["load_before"], about["cores"]
+    lines = [
+        "# Benchmarks",
+        "",
+        f"`make bench` on {about['processor']}, {cores} cores (load {load} before the start),",
+        f"{about['rust']}, Python {about['python']}.",
+        "",
+        "## The triangle kernel against Embree 4 (robust mode)",
+        "",
+        "Rays recorded in the p21w lamp, one thread, interleaved; medians. Above 1 is faster.",
+        "",
+        "| mesh | build, s (Embree) | B/triangle | order | query | kernel | M rays/s | ratio |",
+        "|---|---|---|---|---|---|---|---|",
+    ]
+    for result in results["kernel"]:
+        embree_s = result["embree_build_s"]["robust"]
+        head = (
+            f"| {result['mesh']} | {result['build_s']:.2f} ({embree_s:.2f}) "
+            f"| {result['bytes_per_triangle']:.0f} "
+        )
+        for order in ("path", "shuffled"):
+            for query, kernels in result[order].items():
+                for name, numbers in kernels.items():
+                    rate = numbers["rays_per_s"] / 1e6
+                    ratio = numbers["ratio"]
+                    lines.append(f"{head}| {order} | {query} | {name} | {rate:.2f} | {ratio:.2f} |")
+    against_rgb, two_threads = (
+        hall["spectral_over_rgb_time_per_ray"],
+        hall["speed_up_of_two_threads"],
+    )
+    lines += [
+        "",
+        "## The founding method on the p21w lamp",
+        "",
+        "| what | value |",
+        "|---|---|",
+        f"| rays per second, two threads | {hall['rays_per_s'] / 1e6:.2f} million |",
+        f"| time per ray, 16 wavelengths against RGB | {against_rgb:.2f} × |",
+        f"| speed-up of two threads | {two_threads:.2f} × |",
+        f"| `lamplit --help` | {results['help_s']:.2f} s |",
+        "",
+    ]
+    return "\n".join(lines)
+
+
+def draw_kernel(results: list[dict[str, Any]], path: Path) -> None:
+    """Draw the ratios to robust Embree against the number of triangles."""
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    from matplotlib import pyplot
+
+    figure, axes = pyplot.subplots(figsize=(7.0, 4.2), layout="constrained")
+    sizes = [result["triangles"] for result in results]
+    best = next(name for name in results[0]["path"]["closest"] if "embree" not in name)
+    for order, dash in (("path", "-"), ("shuffled", "--")):
+        for query, colour in (("closest", "#c1121f"), ("any", "#33658a")):
+            ratios = [result[order][query][best]["ratio"] for result in results]
+            label = f"{query} hit, {order} order"
+            axes.plot(sizes, ratios, dash, color=colour, marker="o", label=label)
+    axes.axhline(1.0, color="0.4", linewidth=1)
+    axes.annotate("Embree 4, robust", (sizes[0], 1.0), (0, 4), textcoords="offset points")
+    axes.set(xscale="log", xlabel="triangles", ylabel="rays per second, ratio", ylim=(0, None))
+    axes.set_title(f"Lamplit's {best} kernel on rays of the p21w lamp, one thread")
+    axes.legend(frameon=False)
+    figure.savefig(path, dpi=120)
+    pyplot.close(figure)
+
+
+if __name__ == "__main__":
+    main()
