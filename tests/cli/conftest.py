@@ -48,6 +48,8 @@ class Painter:
         self.calls: list[dict[str, Any]] = []
         self.samples_before_stop: int | None = None
         self.fault: BaseException | None = None
+        self.statistics: dict[str, Any] = {}
+        self.standard_error = 0.01
 
     def render(self, scene: Any, **options: Any) -> Image:
         """Paint the picture of ``scene``, or stop as a real engine stops."""
@@ -72,7 +74,7 @@ class Painter:
         xyz[:, width // 2 :] *= (1.0, 0.5, 0.05) if colour == "spectral" else (1.0, 0.6, 0.1)
         return Image(
             xyz=xyz * (done > 0),
-            xyz_standard_error=0.01 * xyz,
+            xyz_standard_error=self.standard_error * xyz,
             spectral_radiance=np.ones((height, width, 2)),
             band_centres_nm=np.array([450.0, 650.0]),
             samples=done,
@@ -80,6 +82,7 @@ class Painter:
             seed=scene.image.seed,
             scene=scene,
             colour=colour,
+            statistics=self.statistics,
             elapsed_s=0.1,
             complete=done == asked,
             interrupted=done < asked,

@@ -8,8 +8,9 @@ import os
 import signal
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pytest
 
 from lamplit.cli.stopping import stop_signals
@@ -179,12 +180,53 @@ def test_a_mark_outside_the_picture_is_refused_before_the_render(
     assert painter.calls == []
 
 
-def test_lost_rays_and_dropped_samples_are_told_and_clean_renders_are_quiet() -> None:
-    from lamplit.cli.closing import warnings
+def lost(rays: int) -> dict[str, Any]:
+    return {"eye_rays": 8000, "shadow_rays": 2000, "lost_rays": {"ball": {"ended_inside": rays}}}
 
-    lost, dropped = {"lens": 3, "bulb": 0}, 2
-    told = " ".join(warnings({"lost_rays": lost, "dropped_samples": dropped}))
-    assert "3 in lens" in told
-    assert "bulb" not in told
-    assert "2 samples" in told
-    assert warnings({"lost_rays": {}, "dropped_samples": 0}) == []
+
+@pytest.mark.parametrize("command", ["render", "compare"])
+@pytest.mark.parametrize(
+    ("statistics", "allowed", "code", "told"),
+    [
+        (lost(0), False, 0, ""),
+        (lost(1), False, 0, ""),
+        (lost(2), False, 0, "warning: 0.02 % of the rays were lost: 2 at 'ball' ended inside"),
+        (lost(100), False, 0, "warning: 1 % of the rays were lost"),
+        (lost(101), False, 1, "warning: 1 % of the rays were lost"),
+        (lost(900), True, 0, "warning: 9 % of the rays were lost"),
+        ({"dropped_samples": 1}, True, 1, "warning: 1 samples were not finite or negative"),
+    ],
+)
+def test_a_picture_with_losses_is_written_and_warned_of_or_refused(
+    lamplit: Run,
+    painter: Painter,
+    scene_file: Path,
+    capsys: pytest.CaptureFixture[str],
+    *,
+    command: str,
+    statistics: dict[str, Any],
+    allowed: bool,
+    code: int,
+    told: str,
+) -> None:
+    painter.statistics = statistics
+    out = scene_file.parent / "out"
+    more = ["--allow-lost"] if allowed else []
+    assert lamplit(command, scene_file, "-o", out, *more) == code
+    shown = capsys.readouterr()
+    assert told in " ".join(shown.out.split())
+    assert ("warning" in shown.out) == bool(told)
+    assert shown.err.count("error: the picture is written, but") == code
+    assert ("--allow-lost" in shown.err) == (code == 1 and not allowed)
+    assert {"picture.png", "comparison.png"} & names(out)
+
+
+def test_a_render_of_one_sample_has_no_error_and_says_none(
+    lamplit: Run, painter: Painter, scene_file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    painter.standard_error = np.inf
+    out = scene_file.parent / "out"
+    assert lamplit("render", scene_file, "-o", out) == 0
+    numbers = json.loads((out / "summary.json").read_text())
+    assert numbers["luminance_cd_m2"]["mean_standard_error"] is None
+    assert "±" not in capsys.readouterr().out

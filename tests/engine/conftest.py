@@ -38,11 +38,13 @@ class LaneScene:
     def terms(self, **given: Any) -> _core.HallTerms:
         """Return the terms of Hall's model: all weights 1, n = 1, and what is given."""
         usual: Table = {"k_sr": 1.0, "k_st": 1.0, "k_sa": 1.0, "highlight_exponent": 1.0}
-        spectra = {name: self.spectrum(given.pop(name)) for name in ("f_sr", "f_st", "f_sa") & given.keys()}
+        spectra = {
+            name: self.spectrum(given.pop(name)) for name in ("f_sr", "f_st", "f_sa") & given.keys()
+        }
         return _core.HallTerms(**(usual | given | spectra))
 
     def glass(self, index: ArrayLike, absorption: ArrayLike = 0.0, **terms: Any) -> int:
-        """Add a transparent material, which steers by its first lane's index if lanes do not part."""
+        """Add a transparent material; lanes that share directions follow the first one's."""
         n = self.spectrum(index)
         return self.builder.add_dielectric(
             n, float(n[0]), self.spectrum(absorption), self.terms(**terms)
@@ -57,7 +59,13 @@ class LaneScene:
         return self.builder.add_diffuse(self.spectrum(reflectance), self.terms(**terms))
 
     def body(
-        self, kind: str, numbers: Sequence[float], material: int, *, name: str = "", priority: int = 0
+        self,
+        kind: str,
+        numbers: Sequence[float],
+        material: int,
+        *,
+        name: str = "",
+        priority: int = 0,
     ) -> None:
         """Add a primitive by its defining numbers."""
         owner = (name or kind, material, priority)
@@ -77,7 +85,7 @@ class LaneScene:
         self.builder.add_mesh((name, material, 0), corners, faces, normals)
 
     def gradient(self, zenith: ArrayLike = 1.0, nadir: ArrayLike = 0.0) -> None:
-        """Set a background that by default has the radiance (1 + y)/2 in the direction (x, y, z)."""
+        """Set a background: usually of radiance (1 + y)/2 in the direction (x, y, z)."""
         self.builder.set_gradient_background(self.spectrum(zenith), self.spectrum(nadir))
 
     def surround(self, radiance: ArrayLike = 1.0) -> None:

@@ -91,7 +91,9 @@ def test_each_band_has_its_own_transmittance(scene_of: Callable[..., Any]) -> No
 
 
 @pytest.mark.parametrize("thickness", [1e-6, 1e-3, 0.1, 2.5, 40.0, 1e3, 3e5])
-def test_any_thickness_dims_by_t_to_its_power(lane_scene: Callable[[], Any], thickness: float) -> None:
+def test_any_thickness_dims_by_t_to_its_power(
+    lane_scene: Callable[[], Any], thickness: float
+) -> None:
     scene, t = lane_scene(), np.linspace(1e-3, 0.999, 16)
     scene.surround(2.0)
     scene.body("box", [-1, -1, 0, 1, 1, thickness], scene.glass(1.0, -np.log(t)))
@@ -143,8 +145,9 @@ def quadratic(a: float, half_b: Array, c: Array) -> tuple[Array, Array]:
 
 
 def cylinder_chord(o: Array, d: Array) -> Array:
-    side = quadratic(d[0] ** 2 + d[1] ** 2, o[:, 0] * d[0] + o[:, 1] * d[1],
-                     o[:, 0] ** 2 + o[:, 1] ** 2 - 9.0)
+    side = quadratic(
+        d[0] ** 2 + d[1] ** 2, o[:, 0] * d[0] + o[:, 1] * d[1], o[:, 0] ** 2 + o[:, 1] ** 2 - 9.0
+    )
     return clipped([side, ((-4.0 - o[:, 2]) / d[2], (3.0 - o[:, 2]) / d[2])])
 
 
@@ -209,8 +212,8 @@ def test_the_unit_of_a_mesh_changes_nothing(
     file = write_ply("slab.ply", *box_mesh(np.full(3, -size / 2), np.full(3, size / 2)))
     slab = {"name": "slab", "kind": "mesh", "file": file, "unit": unit, "material": "lens"}
     scene = scene_of(
-        camera={"height_mm": 2.0} | {"kind": "orthographic", "position_mm": [0, 0, 9],
-                                     "target_mm": [0, 0, 0]},
+        camera={"height_mm": 2.0}
+        | {"kind": "orthographic", "position_mm": [0, 0, 9], "target_mm": [0, 0, 0]},
         image={"samples": 25, "width": 3, "height": 3},
         materials={"lens": tinted()},
         objects=[slab],
@@ -222,8 +225,12 @@ def test_a_world_a_thousand_times_larger_looks_the_same(scene_of: Callable[..., 
     def picture(scale: float) -> Array:
         ball = {"name": "ball", "kind": "sphere", "centre_mm": [1, 2, 3], "radius_mm": 8}
         scene = scene_of(
-            camera={"kind": "pinhole", "position_mm": [0, 0, 40 * scale],
-                    "target_mm": [0, 0, 0], "field_of_view_deg": 30.0},
+            camera={
+                "kind": "pinhole",
+                "position_mm": [0, 0, 40 * scale],
+                "target_mm": [0, 0, 0],
+                "field_of_view_deg": 30.0,
+            },
             materials={"lens": tinted(0.9, scale) | {"refractive_index": 1.49}},
             objects=[ball | {"material": "lens", "transform": {"scale": scale}}],
         )

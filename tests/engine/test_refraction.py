@@ -123,8 +123,14 @@ def test_a_slab_shifts_a_ray_by_snells_law(lane_scene: Maker, degrees: float) ->
     # In the plane z = thickness; then down through the slab, then on to the floor.
     start = x * right[0] + (thickness - x * right[2]) * np.tan(angle)
     where = start - thickness * np.tan(inner) + floor * np.tan(angle)
-    way = np.stack([lamp[0] - where, np.broadcast_to(lamp[1] - y, where.shape),
-                    np.full(where.shape, lamp[2] - floor)], -1)
+    way = np.stack(
+        [
+            lamp[0] - where,
+            np.broadcast_to(lamp[1] - y, where.shape),
+            np.full(where.shape, lamp[2] - floor),
+        ],
+        -1,
+    )
     expected = way[..., 2] / np.linalg.norm(way, axis=-1)
     np.testing.assert_allclose(got, expected, rtol=1e-6)
 
@@ -158,7 +164,9 @@ def test_a_prism_of_pmma_deviates_each_wavelength_least_as_its_index_asks(
         prism(scene, apex, n, shape)
         # The left face's outward normal points up and to the left; the ray comes from there.
         normal = np.array([-np.cos(apex / 2), np.sin(apex / 2)])
-        turn = np.array([[np.cos(incidence), np.sin(incidence)], [-np.sin(incidence), np.cos(incidence)]])
+        turn = np.array(
+            [[np.cos(incidence), np.sin(incidence)], [-np.sin(incidence), np.cos(incidence)]]
+        )
         from_eye = -(turn.T @ normal)
         hit = np.array([-6 * np.tan(apex / 2), -6.0])
         scene.look((*(hit - 150 * from_eye), 0.0), (*hit, 0.0), up=(0, 0, 1))
@@ -185,22 +193,42 @@ def test_a_prism_in_a_scene_file_spreads_the_spectrum_by_pmmas_index(
     apex, incidence = np.radians(50.0), np.radians(40.0)
     x = 60 * np.tan(apex / 2)
     normal = np.array([-np.cos(apex / 2), np.sin(apex / 2)])
-    turn = np.array([[np.cos(incidence), -np.sin(incidence)], [np.sin(incidence), np.cos(incidence)]])
+    turn = np.array(
+        [[np.cos(incidence), -np.sin(incidence)], [np.sin(incidence), np.cos(incidence)]]
+    )
     view = -(turn @ normal)
     hit = np.array([-6 * np.tan(apex / 2), -6.0])
     dark = {"source": "E", "luminance_cd_m2": 0.0}
     scene = scene_of(
-        camera={"kind": "orthographic", "position_mm": [*(hit - 150 * view), 0.0],
-                "target_mm": [*hit, 0.0], "up": [0, 0, 1], "height_mm": 0.1},
+        camera={
+            "kind": "orthographic",
+            "position_mm": [*(hit - 150 * view), 0.0],
+            "target_mm": [*hit, 0.0],
+            "up": [0, 0, 1],
+            "height_mm": 0.1,
+        },
         image={"width": 3, "height": 2, "samples": 25},
         hall={"dispersion_groups": 16},
-        background={"kind": "gradient", "nadir": dark,
-                    "zenith": {"source": "E", "luminance_cd_m2": 100.0}},
-        materials={"pmma": {"kind": "dielectric", "refractive_index": {"cauchy": list(CAUCHY)},
-                            "hall": {"k_sr": 0.0, "specular_reflectance": 0.0,
-                                     "specular_transmittance": 1.0}}},
-        objects=[{"name": "prism", "kind": "tetrahedron", "material": "pmma",
-                  "points_mm": [[0, 0, 200], [0, 0, -200], [x, -60, 0], [-x, -60, 0]]}],
+        background={
+            "kind": "gradient",
+            "nadir": dark,
+            "zenith": {"source": "E", "luminance_cd_m2": 100.0},
+        },
+        materials={
+            "pmma": {
+                "kind": "dielectric",
+                "refractive_index": {"cauchy": list(CAUCHY)},
+                "hall": {"k_sr": 0.0, "specular_reflectance": 0.0, "specular_transmittance": 1.0},
+            }
+        },
+        objects=[
+            {
+                "name": "prism",
+                "kind": "tetrahedron",
+                "material": "pmma",
+                "points_mm": [[0, 0, 200], [0, 0, -200], [x, -60, 0], [-x, -60, 0]],
+            }
+        ],
     )
     image = ll.render(scene, spectral_bands=True)
     nm = 380.5 + np.arange(400.0)
@@ -222,8 +250,11 @@ def test_groups_of_lanes_part_as_finely_as_asked(lane_scene: Maker, groups: int)
     prism(scene, apex, n, "tetrahedron")
     scene.look((-150, -6, 0), (0, -6, 0), up=(0, 0, 1))
     seen = directions(scene.radiance(dispersion_groups=groups))
-    shared = np.full(16, n[0]) if groups == 1 else np.repeat(
-        n.reshape(groups, -1).mean(axis=1), 16 // groups)
+    shared = (
+        np.full(16, n[0])
+        if groups == 1
+        else np.repeat(n.reshape(groups, -1).mean(axis=1), 16 // groups)
+    )
     first = np.arcsin(np.sin(apex / 2) / shared)
     expected = apex / 2 - np.arcsin(shared * np.sin(apex - first))
     np.testing.assert_allclose(seen, expected, atol=1e-12)

@@ -72,18 +72,34 @@ def test_another_seed_gives_another_picture_of_the_same_mean(
 def test_ranges_of_samples_add_up_to_the_whole(lane_scene: Maker) -> None:
     world = lit_glass(lane_scene)
     whole = world.render(17, 9, 16, sampling="sobol").xyz()
-    parts = [world.render(17, 9, n, first_sample=at, sampling="sobol").xyz() * n
-             for at, n in ((0, 5), (5, 1), (6, 10))]
+    parts = [
+        world.render(17, 9, n, first_sample=at, sampling="sobol").xyz() * n
+        for at, n in ((0, 5), (5, 1), (6, 10))
+    ]
     np.testing.assert_allclose(sum(parts) / 16, whole, rtol=1e-13)
 
 
 def test_a_scene_renders_to_the_same_bits_on_any_threads(scene_of: Callable[..., Any]) -> None:
     scene = scene_of(
         image={"samples": 4, "filter": "gaussian"},
-        lights=[{"kind": "sphere", "centre_mm": [30, 40, 50], "radius_mm": 9.0, "source": "D65",
-                 "luminance_cd_m2": 500.0}],
-        objects=[{"name": "ball", "kind": "sphere", "centre_mm": [0, 0, 0], "radius_mm": 7,
-                  "material": "red-pmma"}],
+        lights=[
+            {
+                "kind": "sphere",
+                "centre_mm": [30, 40, 50],
+                "radius_mm": 9.0,
+                "source": "D65",
+                "luminance_cd_m2": 500.0,
+            }
+        ],
+        objects=[
+            {
+                "name": "ball",
+                "kind": "sphere",
+                "centre_mm": [0, 0, 0],
+                "radius_mm": 7,
+                "material": "red-pmma",
+            }
+        ],
     )
     pictures = [ll.render(scene, threads=threads).xyz for threads in (1, 2, 7, 16)]
     assert len({sha256(xyz.tobytes()).hexdigest() for xyz in pictures}) == 1
@@ -150,7 +166,13 @@ material = "pmma-clear"
 def test_ctrl_c_stops_within_2_seconds_and_keeps_what_is_done(tmp_path: Path) -> None:
     (tmp_path / "long.toml").write_text(LONG.replace("1000000", "65536"))
     (tmp_path / "stopped.py").write_text(STOPPED)
-    words = [sys.executable, "-W", "error", str(tmp_path / "stopped.py"), str(tmp_path / "long.toml")]
+    words = [
+        sys.executable,
+        "-W",
+        "error",
+        str(tmp_path / "stopped.py"),
+        str(tmp_path / "long.toml"),
+    ]
     run = subprocess.run(words, capture_output=True, text=True, timeout=60, check=False)
     assert run.returncode == 0, run.stderr
     assert float(run.stdout.removeprefix("stopped after ")) < 2.0
@@ -161,8 +183,15 @@ def test_a_fault_in_the_callers_progress_comes_back_to_the_caller(
 ) -> None:
     scene = scene_of(
         image={"width": 64, "height": 64, "samples": 40_000},
-        objects=[{"name": "ball", "kind": "sphere", "centre_mm": [0, 0, 0], "radius_mm": 7,
-                  "material": "red-pmma"}],
+        objects=[
+            {
+                "name": "ball",
+                "kind": "sphere",
+                "centre_mm": [0, 0, 0],
+                "radius_mm": 7,
+                "material": "red-pmma",
+            }
+        ],
     )
 
     def progress(done: int, total: int) -> None:

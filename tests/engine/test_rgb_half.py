@@ -29,14 +29,26 @@ WHITE_POINT = np.array([0.3127, 0.3290, 0.3583]) / 0.3290
 TO_XYZ = PRIMARIES * np.linalg.solve(PRIMARIES, WHITE_POINT)
 TO_RGB = np.linalg.inv(TO_XYZ)
 
-WHITE = {"wavelengths_nm": [380, 500, 600, 780], "values": [0.6, 1.0, 0.9, 0.7],
-         "interpolation": "linear"}
-LAMP = {"wavelengths_nm": [380, 500, 620, 780], "values": [0.3, 0.7, 0.9, 1.0],
-        "interpolation": "linear"}
-PAINT = {"wavelengths_nm": [380, 480, 560, 780], "values": [0.3, 0.2, 0.6, 0.5],
-         "interpolation": "linear"}
-LENS = {"wavelengths_nm": [380, 550, 620, 780], "values": [0.7, 0.6, 0.9, 0.95],
-        "interpolation": "linear"}
+WHITE = {
+    "wavelengths_nm": [380, 500, 600, 780],
+    "values": [0.6, 1.0, 0.9, 0.7],
+    "interpolation": "linear",
+}
+LAMP = {
+    "wavelengths_nm": [380, 500, 620, 780],
+    "values": [0.3, 0.7, 0.9, 1.0],
+    "interpolation": "linear",
+}
+PAINT = {
+    "wavelengths_nm": [380, 480, 560, 780],
+    "values": [0.3, 0.2, 0.6, 0.5],
+    "interpolation": "linear",
+}
+LENS = {
+    "wavelengths_nm": [380, 550, 620, 780],
+    "values": [0.7, 0.6, 0.9, 0.95],
+    "interpolation": "linear",
+}
 
 
 def value(spec: dict[str, Any]) -> Array:
@@ -53,15 +65,27 @@ def matter_rgb(values: Array) -> Array:
     return (TO_RGB @ ((white * values) @ OBSERVER)) / (TO_RGB @ (white @ OBSERVER))
 
 
-def test_a_matt_sphere_in_rgb_is_equation_4_with_three_numbers(scene_of: Callable[..., Any]) -> None:
-    light = {"kind": "directional", "direction": [-1, -2, -3], "source": LAMP, "luminance_cd_m2": 500.0}
+def test_a_matt_sphere_in_rgb_is_equation_4_with_three_numbers(
+    scene_of: Callable[..., Any],
+) -> None:
+    light = {
+        "kind": "directional",
+        "direction": [-1, -2, -3],
+        "source": LAMP,
+        "luminance_cd_m2": 500.0,
+    }
     ball = {"name": "ball", "kind": "sphere", "centre_mm": [0, 0, 0], "radius_mm": 8}
     scene = scene_of(
         display={"white": WHITE},
         ambient={"source": LAMP, "luminance_cd_m2": 60.0},
         lights=[light],
-        materials={"paint": {"kind": "diffuse", "reflectance": PAINT,
-                             "hall": {"k_sr": 0.8, "k_sa": 0.5, "highlight_exponent": 2.0}}},
+        materials={
+            "paint": {
+                "kind": "diffuse",
+                "reflectance": PAINT,
+                "hall": {"k_sr": 0.8, "k_sa": 0.5, "highlight_exponent": 2.0},
+            }
+        },
         background={"kind": "constant", "source": LAMP, "luminance_cd_m2": 30.0},
         objects=[ball | {"material": "paint"}],
     )
@@ -86,8 +110,13 @@ def test_a_slab_in_rgb_dims_by_the_power_of_its_rgb_at_1_mm(
     slab = {"name": "slab", "kind": "box", "min_mm": [-50, -50, 0], "max_mm": [50, 50, thickness]}
     scene = scene_of(
         display={"white": WHITE},
-        materials={"lens": {"kind": "dielectric", "refractive_index": 1.0,
-                            "internal_transmittance": {"thickness_mm": 2.0} | LENS}},
+        materials={
+            "lens": {
+                "kind": "dielectric",
+                "refractive_index": 1.0,
+                "internal_transmittance": {"thickness_mm": 2.0} | LENS,
+            }
+        },
         background={"kind": "constant", "source": LAMP, "luminance_cd_m2": 30.0},
         objects=[slab | {"material": "lens"}],
     )
@@ -104,8 +133,14 @@ def test_both_halves_of_a_comparison_agree_where_one_reflection_of_white_is_all(
     scene = scene_of(
         image={"samples": 25},
         display={"white": WHITE},
-        lights=[{"kind": "directional", "direction": [0, 0, -1], "source": WHITE,
-                 "luminance_cd_m2": 400.0}],
+        lights=[
+            {
+                "kind": "directional",
+                "direction": [0, 0, -1],
+                "source": WHITE,
+                "luminance_cd_m2": 400.0,
+            }
+        ],
         materials={"paint": {"kind": "diffuse", "reflectance": PAINT}},
         objects=[floor | {"material": "paint"}],
     )

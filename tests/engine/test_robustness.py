@@ -33,7 +33,10 @@ def film_picture(
     scene.look(target + 5 * size * away, target, up=(1, 0, 0), height_mm=0.2 * size)
     render = scene.render(16, 16)
     inner = np.arcsin(np.sin(angle) / n)
-    s, p = np.sin(angle - inner) / np.sin(angle + inner), np.tan(angle - inner) / np.tan(angle + inner)
+    s, p = (
+        np.sin(angle - inner) / np.sin(angle + inner),
+        np.tan(angle - inner) / np.tan(angle + inner),
+    )
     r = (s**2 + p**2) / 2
     tau = np.exp(-alpha * (high - low)[1] / np.cos(inner))
     t = (1 - r) ** 2 * tau / (1 - (r * tau) ** 2)
@@ -83,9 +86,12 @@ def test_a_slab_is_the_same_at_every_size_and_place(
 @pytest.mark.parametrize("kind", ["sphere", "cylinder", "cone", "tetrahedron"])
 @pytest.mark.parametrize("offset", [0.0, 1e3, 1e6])
 def test_round_bodies_lose_no_ray_at_any_place(lane_scene: Maker, kind: str, offset: float) -> None:
-    numbers = {"sphere": [0, 0, 0, 5], "cylinder": [0, 0, -4, 0, 0, 1, 3, 7],
-               "cone": [0, 0, -4, 0, 0, 1, 4, 8],
-               "tetrahedron": [-3, -3, -3, 6, -3, -3, -3, 6, -3, -3, -3, 6]}[kind]
+    numbers = {
+        "sphere": [0, 0, 0, 5],
+        "cylinder": [0, 0, -4, 0, 0, 1, 3, 7],
+        "cone": [0, 0, -4, 0, 0, 1, 4, 8],
+        "tetrahedron": [-3, -3, -3, 6, -3, -3, -3, 6, -3, -3, -3, 6],
+    }[kind]
     points = {"sphere": 1, "cylinder": 1, "cone": 1, "tetrahedron": 4}[kind]
     placed = np.array(numbers, float)
     placed[: 3 * points] += offset
@@ -93,7 +99,7 @@ def test_round_bodies_lose_no_ray_at_any_place(lane_scene: Maker, kind: str, off
     scene.surround()
     scene.body(kind, placed, scene.glass(1.3))
     centre = np.full(3, offset)
-    scene.look(centre + [80, 45, 30], centre, height_mm=12.0)
+    scene.look(np.add(centre, (80, 45, 30)), centre, height_mm=12.0)
     render = scene.render(48, 48, max_depth=60, contribution_limit=1e-4)
     assert render.statistics()["lost_rays"] == {}
     assert render.statistics()["dropped_samples"] == 0
@@ -113,12 +119,29 @@ def test_flipped_triangles_give_the_same_picture(
     for name, turned in (("out", faces), ("in", faces[:, ::-1]), ("mixed", some)):
         file = write_ply(f"{name}.ply", corners, turned)
         scene = scene_of(
-            camera={"kind": "pinhole", "position_mm": [20, 30, 50], "target_mm": [0, 0, 0],
-                    "field_of_view_deg": 18.0},
-            lights=[{"kind": "point", "position_mm": [30, 50, 20], "source": "D65",
-                     "luminance_cd_m2": 300.0}],
-            objects=[{"name": "block", "kind": "mesh", "file": file, "unit": "mm",
-                      "material": "red-pmma"}],
+            camera={
+                "kind": "pinhole",
+                "position_mm": [20, 30, 50],
+                "target_mm": [0, 0, 0],
+                "field_of_view_deg": 18.0,
+            },
+            lights=[
+                {
+                    "kind": "point",
+                    "position_mm": [30, 50, 20],
+                    "source": "D65",
+                    "luminance_cd_m2": 300.0,
+                }
+            ],
+            objects=[
+                {
+                    "name": "block",
+                    "kind": "mesh",
+                    "file": file,
+                    "unit": "mm",
+                    "material": "red-pmma",
+                }
+            ],
         )
         pictures.append(ll.render(scene).xyz)
         assert bool(scene.resolved_objects()[0].notices) == (name != "out")

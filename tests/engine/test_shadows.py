@@ -48,7 +48,9 @@ def test_an_opaque_body_blocks_and_the_rest_is_untouched(lane_scene: Maker, kind
     gap = np.linalg.norm(np.cross(way, to_ball), axis=-1)
     blocked = gap < 1.5
     assert 0.2 < blocked.mean() < 0.8
-    np.testing.assert_allclose(got, np.where(blocked, 0.0, free)[..., None] * np.ones(16), rtol=1e-9)
+    np.testing.assert_allclose(
+        got, np.where(blocked, 0.0, free)[..., None] * np.ones(16), rtol=1e-9
+    )
     lit = lit_floor(lane_scene, put, shadows=False)
     np.testing.assert_allclose(lit, free[..., None] * np.ones(16), rtol=1e-9)
 

@@ -44,6 +44,32 @@ def test_importing_lamplit_loads_no_heavy_library() -> None:
     assert not heavy & set(loaded)
 
 
+@pytest.mark.parametrize(
+    "command",
+    [
+        ["render", "lamp/scene.toml", "-o", "out", "--size", "16x10", "--samples", "4"],
+        ["compare", "lamp/scene.toml", "-o", "out", "--size", "16x10", "--samples", "4"],
+        ["sources", "D65"],
+        ["materials", "red-pmma"],
+        ["check", "lamp/scene.toml"],
+    ],
+    ids=lambda command: command[0],
+)
+def test_no_command_needs_the_libraries_that_only_tests_have(
+    tmp_path: Path, command: list[str]
+) -> None:
+    lamplit.write_lamp("paper", tmp_path / "lamp", {})
+    code = (
+        "import sys; from lamplit.cli import main; code = main(sys.argv[1:]); "
+        "print(*sys.modules, file=sys.stderr); sys.exit(code)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code, *command], cwd=tmp_path, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stdout
+    assert not {"colour", "trimesh", "pandas", "xarray"} & set(done.stderr.split())
+
+
 def test_the_wheel_installs_into_an_empty_environment_and_renders(tmp_path: Path) -> None:
     maturin = Path(sys.executable).with_name("maturin")
     subprocess.run(
@@ -59,6 +85,8 @@ def test_the_wheel_installs_into_an_empty_environment_and_renders(tmp_path: Path
     assert "lamplit/materials/library/red-pmma.toml" in names
     assert "lamplit/scene/scene.schema.json" in names
     assert "lamplit/py.typed" in names
+    assert "lamplit/cie/cie-1931-2.csv" in names
+    assert any(name.endswith(".dist-info/licenses/THIRD_PARTY.md") for name in names)
     needed = set(re.findall(rb"lib[\w+-]+\.so\.\d+", core))
     assert needed <= {f"lib{name}".encode() for name in SYSTEM_LIBRARIES}
 

@@ -80,7 +80,7 @@ def make_image() -> Callable[..., Image]:
             "samples_asked": 16,
             "seed": 1,
             "scene": FlatScene(),
-            "statistics": {"rays": 1234, "lost_rays": 0},
+            "statistics": {"eye_rays": 20_000, "shadow_rays": 10_000, "lost_rays": {}},
             "elapsed_s": 1.5,
             "complete": True,
             "version": "0.1.0",

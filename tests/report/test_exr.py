@@ -71,7 +71,7 @@ def test_the_header_says_how_to_make_the_file_again(tmp_path: Path, make_image: 
     assert header["lamplit.observer"] == "cie-1931-2"
     assert header["lamplit.white"] == "D65"
     assert header["lamplit.command"] == "lamplit render scene.toml -o out"
-    assert json.loads(header["lamplit.statistics"])["lost_rays"] == 0
+    assert json.loads(header["lamplit.statistics"])["eye_rays"] == 20_000
 
 
 def with_bands(make_image: MakeImage) -> Image:

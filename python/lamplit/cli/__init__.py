@@ -44,9 +44,9 @@ def root(
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit code.
 
-    A fault of the input is one line on the error stream and code 2; a fault of Lamplit itself is
-    one line and code 1, and its traceback when ``LAMPLIT_TRACEBACK`` is set; a run that was
-    stopped by Ctrl-C ends with 130.
+    A fault of the input is one line on the error stream and code 2; a result that must not pass
+    as one is one line and code 1; so is a fault of Lamplit itself, which shows its traceback when
+    ``LAMPLIT_TRACEBACK`` is set; a run that was stopped by Ctrl-C ends with 130.
     """
     try:
         code = app(

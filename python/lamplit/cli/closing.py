@@ -3,9 +3,12 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+import typer
 
 if TYPE_CHECKING:
     from lamplit.engine.image import Image
@@ -18,6 +21,8 @@ def show_results(
     from rich.console import Console
     from rich.markup import escape
 
+    from lamplit.report.losses import Losses
+
     console = Console(highlight=False, soft_wrap=True)
     console.print(f"\n[bold]{escape(_heading(image))}[/bold]")
     for title, lines in (("", numbers), (f"Files in {directory}", files)):
@@ -26,7 +31,7 @@ def show_results(
         width = max(map(len, lines), default=0) + 3
         for name, text in lines.items():
             console.print(f"  {escape(name.ljust(width))}[dim]{escape(text)}[/dim]")
-    for warning in warnings(image.statistics):
+    for warning in Losses.of(image).warnings():
         console.print(f"\n[yellow]warning: {escape(warning)}[/yellow]")
     if not image.complete:
         console.print(
@@ -35,17 +40,18 @@ def show_results(
         )
 
 
-def warnings(statistics: Mapping[str, Any]) -> list[str]:
-    """Return what a user must know of a render that went wrong in places."""
-    found: list[str] = []
-    dropped = statistics.get("dropped_samples", 0)
-    if dropped:
-        found.append(f"{dropped} samples were not finite and were dropped; please report it")
-    lost = {body: count for body, count in statistics.get("lost_rays", {}).items() if count}
-    if lost:
-        bodies = ", ".join(f"{count} in {body}" for body, count in lost.items())
-        found.append(f"rays were lost ({bodies}); lamplit check finds open or overlapping bodies")
-    return found
+def end_if_refused(*images: Image, allow_lost: bool) -> None:
+    """End the run with one line of error if one of ``images`` is not to be trusted.
+
+    Raises:
+        typer.Exit: With code 1.
+    """
+    from lamplit.report.losses import Losses
+
+    for image in images:
+        if fault := Losses.of(image).fault(allow_lost=allow_lost):
+            print(f"error: the picture is written, but {fault}", file=sys.stderr)
+            raise typer.Exit(1)
 
 
 def _heading(image: Image) -> str:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from lamplit.cli.options import (
+    AllowLostOption,
     DisplayOption,
     Method,
     MethodOption,
@@ -52,12 +53,15 @@ def compare(
             "Without it, the places that differ most.",
         ),
     ] = None,
+    allow_lost: AllowLostOption = False,
 ) -> None:
     """Render SCENE in RGB and in spectra, and lay the two side by side on one page.
 
-    Ctrl-C keeps what is done of the picture that is being made.
+    Ctrl-C keeps what is done of the picture that is being made. Exit code 1: the files are
+    written, but the pictures are not to be trusted, since too many rays were lost.
     """
     from lamplit import engine
+    from lamplit.cli.closing import end_if_refused
     from lamplit.report.atomic import prepare_output
     from lamplit.report.comparison import COMPARISON_FILES, write_comparison
     from lamplit.report.develop import check_display
@@ -84,6 +88,7 @@ def compare(
     spectral, rgb = (replace(image, command=command) for image in (pair.spectral, pair.rgb))
     difference = write_comparison(spectral, rgb, output, marks=marks)
     _tell(output, spectral, difference)
+    end_if_refused(spectral, rgb, allow_lost=allow_lost)
 
 
 def _keep(output: Path, image: Image) -> None:

@@ -59,4 +59,10 @@ SetOption = Annotated[
 DisplayOption = Annotated[
     DisplayName | None, typer.Option("--display", help="Display, instead of the scene's.")
 ]
+AllowLostOption = Annotated[
+    bool,
+    typer.Option(
+        "--allow-lost", help="Let a picture pass although more than 1 % of its rays are lost."
+    ),
+]
 BitsOption = Annotated[Bits, typer.Option("--bits", help="Bits per channel of the PNG.")]

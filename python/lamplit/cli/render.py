@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from lamplit.cli.options import (
+    AllowLostOption,
     Bits,
     BitsOption,
     DisplayOption,
@@ -57,12 +58,15 @@ def render(
     gamut_mask: Annotated[
         bool, typer.Option("--gamut-mask", help="Also draw which pixels the display cannot show.")
     ] = False,
+    allow_lost: AllowLostOption = False,
 ) -> None:
     """Render SCENE: picture.png for the display, picture.exr with exact values, summary.json.
 
-    Ctrl-C keeps the samples that are done.
+    Ctrl-C keeps the samples that are done. Exit code 1: the files are written, but the picture is
+    not to be trusted, since too many rays were lost.
     """
     from lamplit import engine
+    from lamplit.cli.closing import end_if_refused
     from lamplit.report.atomic import prepare_output
     from lamplit.report.develop import check_display, develop
     from lamplit.report.progress import Progress
@@ -94,6 +98,7 @@ def render(
     _write(output, image, developed, numbers, bits=bits, spectral=spectral, mask=gamut_mask)
     _tell(output, image, numbers, names)
     stop.end_if_interrupted(image)
+    end_if_refused(image, allow_lost=allow_lost)
 
 
 def _write(
@@ -130,7 +135,7 @@ def _tell(output: Path, image: Image, numbers: dict[str, Any], names: list[str])
     spread = " | ".join(f"{shares[share]:.4g}" for share in ("5", "50", "95") if share in shares)
     mean, error = luminance["mean"], luminance["mean_standard_error"]
     rows = {
-        "luminance, mean": f"{mean:.4g} ± {error:.2g} cd/m²",
+        "luminance, mean": f"{mean:.4g}{'' if error is None else f' ± {error:.2g}'} cd/m²",
         "luminance, 5 | 50 | 95 %": f"{spread} cd/m²",
         "chromaticity of the mean": "none: black" if xy is None else f"{xy[0]:.4f}, {xy[1]:.4f}",
         f"outside {display['label']}": f"{100 * display['out_of_gamut_share']:.1f} % of the pixels",

@@ -30,7 +30,7 @@ class Image:
     spectral_radiance: Array | None = None
     #: The middle of each band, (B,), in nm, rising.
     band_centres_nm: Array = field(default_factory=lambda: np.empty(0))
-    #: Samples per pixel that are in the picture, and that were asked for.
+    #: Samples per pixel that were taken (in every pixel at least), and that were asked for.
     samples: int
     samples_asked: int
     seed: int

@@ -79,7 +79,7 @@ def render(
         xyz_standard_error=outcome.xyz_standard_error(),
         spectral_radiance=outcome.spectral_radiance() if bands else None,
         band_centres_nm=_band_centres(scene, bands),
-        samples=int(outcome.samples().min()),
+        samples=int(outcome.samples().min()) if outcome.interrupted else scene.image.samples,
         samples_asked=scene.image.samples,
         seed=scene.image.seed,
         scene=scene,

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from lamplit.errors import OutputError
 from lamplit.report.atomic import replacing
+from lamplit.report.losses import Losses
 from lamplit.report.provenance import provenance
 
 if TYPE_CHECKING:
@@ -36,7 +37,8 @@ def write_exr(path: Path, image: Image, developed: Developed, *, spectral: bool 
     Channels: ``X Y Z`` in cd/m², ``standard_error.X`` to ``.Z`` in cd/m², ``R G B`` linear in the
     display's primaries before any gamut mapping, and with ``spectral`` one ``S0.<λ>nm`` per band.
     Header: chromaticities and whiteLuminance of the display, and all of `provenance`, each as
-    ``lamplit.<name>``; ``lamplit.statistics`` has the engine's counts as JSON.
+    ``lamplit.<name>``; ``lamplit.statistics`` has the engine's counts and ``lamplit.losses`` what
+    is missing from the picture, both as JSON.
 
     Raises:
         OutputError: The file cannot be written, or bands are asked for that were not rendered.
@@ -141,6 +143,7 @@ def _attributes(image: Image, developed: Developed) -> dict[str, Any]:
         "chromaticities": tuple(float(value) for value in corners),
         "whiteLuminance": float(developed.white_luminance_cd_m2),
         "lamplit.units": _UNITS,
+        "lamplit.losses": json.dumps(Losses.of(image).as_json(), ensure_ascii=True),
         "lamplit.statistics": json.dumps(dict(image.statistics), ensure_ascii=True),
     }
     for name, value in provenance(image).items():

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lamplit.report.losses import Losses
 from lamplit.report.provenance import described, provenance
 
 if TYPE_CHECKING:
@@ -21,12 +22,14 @@ _PERCENTILES = (0, 1, 5, 25, 50, 75, 95, 99, 100)
 def summary(image: Image, developed: Developed) -> dict[str, Any]:
     """Return what ``image`` shows and how it came about, as plain JSON values.
 
-    Luminances are in cd/m². The standard error of the mean takes pixels as independent.
+    Luminances are in cd/m². The standard error of the mean takes pixels as independent; it is None
+    where a pixel has a single sample, which has no error that could be known.
     """
     height, width = image.height, image.width
     good = np.isfinite(image.xyz).all(axis=-1)
     mean_xyz = image.xyz[good].mean(axis=0) if good.any() else np.zeros(3)
     error = image.xyz_standard_error[..., 1][good]
+    mean_error = float(np.sqrt(np.square(error).sum()) / max(error.size, 1))
     return {
         "lamplit_summary": 1,
         **provenance(image),
@@ -34,7 +37,7 @@ def summary(image: Image, developed: Developed) -> dict[str, Any]:
         "height": height,
         "luminance_cd_m2": {
             "mean": float(mean_xyz[1]),
-            "mean_standard_error": float(np.sqrt(np.square(error).sum()) / max(error.size, 1)),
+            "mean_standard_error": mean_error if np.isfinite(mean_error) else None,
             "percentiles": percentiles(image.luminance_cd_m2[good], _PERCENTILES),
         },
         "chromaticity_xy_of_mean": chromaticity(mean_xyz),
@@ -49,6 +52,7 @@ def summary(image: Image, developed: Developed) -> dict[str, Any]:
         },
         "not_finite_pixels": int(good.size - good.sum()),
         "negative_luminance_pixels": int((image.luminance_cd_m2[good] < 0).sum()),
+        "losses": Losses.of(image).as_json(),
         "statistics": dict(image.statistics),
         "elapsed_s": float(image.elapsed_s),
         "python": platform.python_version(),

@@ -21,7 +21,7 @@ pub fn refract(wi: DVec3, normal: DVec3, eta: f64) -> Option<DVec3> {
 
 /// The cosine of the refracted ray with the normal's other side; `None` beyond the critical angle.
 fn refracted_cosine(cos_i: f64, eta: f64) -> Option<f64> {
-    let sin2_t = (1.0 - cos_i * cos_i).max(0.0) / (eta * eta);
+    let sin2_t = ((1.0 - cos_i) * (1.0 + cos_i)).max(0.0) / (eta * eta);
     (sin2_t < 1.0).then(|| (1.0 - sin2_t).sqrt())
 }
 
@@ -30,6 +30,9 @@ fn refracted_cosine(cos_i: f64, eta: f64) -> Option<f64> {
 /// `cos_i` is the cosine on the incident side, `eta` = n₂/n₁. It is 1 beyond the critical angle
 /// and exactly 0 for `eta` = 1. Source: Born & Wolf, *Principles of Optics*, §1.5.2.
 pub fn dielectric_reflectance(cos_i: f64, eta: f64) -> f64 {
+    if eta == 1.0 {
+        return 0.0;
+    }
     let cos_i = cos_i.clamp(0.0, 1.0);
     let Some(cos_t) = refracted_cosine(cos_i, eta) else {
         return 1.0;
@@ -68,7 +71,9 @@ mod tests {
         for (eta, expected) in [(1.5, 0.04), (1.0 / 1.5, 0.04), (1.4915, 0.038_915_7)] {
             assert!((dielectric_reflectance(1.0, eta) - expected).abs() < 1e-6);
         }
-        assert_eq!(dielectric_reflectance(0.3, 1.0), 0.0);
+        for cos_i in [0.0, 1e-9, 0.3, 1.0] {
+            assert_eq!(dielectric_reflectance(cos_i, 1.0), 0.0);
+        }
     }
 
     #[test]

@@ -200,13 +200,13 @@ impl<'a> HallWalk<'a> {
         let diffuse = material.diffuse_reflectance(meeting.hit.point.position, self.wavelengths);
         match (specular, diffuse) {
             (Some(f_sr), base) => {
+                let below = base.map(|base| base * (SampledSpectrum::ONE - f_sr));
                 self.add_highlights(branch, meeting, terms, f_sr, branch.interior, 1.0);
-                if let Some(base) = base {
+                if let Some(below) = below {
                     let matt = HallTerms { highlight_exponent: 1.0, ..terms.clone() };
-                    let below = base * (SampledSpectrum::ONE - f_sr);
                     self.add_highlights(branch, meeting, &matt, below, branch.interior, 1.0);
                 }
-                self.add_ambient(branch, terms, base);
+                self.add_ambient(branch, terms, below);
                 self.reflect(branch, meeting, terms, f_sr);
             }
             (None, Some(matt)) => {
