@@ -54,3 +54,5 @@ if __name__ == "__main__":
         main()
     except ll.LamplitError as fault:
         sys.exit(f"error: {fault}")
+    except KeyboardInterrupt:
+        sys.exit(130)

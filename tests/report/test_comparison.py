@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -69,6 +70,31 @@ def test_marks_are_found_where_the_pictures_differ(pair: tuple[Image, Image]) ->
     assert 1 <= len(marks) <= 5
     assert all(mark.row >= 11 for mark in marks[:1])
     assert len({(mark.row, mark.column) for mark in marks}) == len(marks)
+
+
+def test_marks_stand_in_fields_and_not_on_rims_dark_places_or_single_pixels(
+    make_image: MakeImage,
+) -> None:
+    """A lens that differs a little, in a thin rim, beside a dark part and noise that differ much."""
+    xyz = np.full((120, 200, 1), 300.0) * np.array([0.95, 1.0, 1.09])
+    y, x = np.mgrid[0:120, 0:200]
+    away = np.hypot(x - 80, y - 60)
+    rim, dark = (away > 40.0) & (away < 43.0), x > 150
+    noise = (away < 40.0) & (x % 9 == 0) & (y % 7 == 0)
+    xyz[dark] *= 0.01
+    other = xyz.copy()
+    other[away <= 40.0, 0] *= 0.93
+    for strongly in (rim, dark, noise):
+        other[strongly, 0] *= 0.5
+    difference = measure_difference(make_image(xyz=xyz), make_image(xyz=other, colour="rgb"))
+    marks = difference.marks
+    assert all(mark.delta_e == difference.delta_e[mark.row, mark.column] for mark in marks)
+    assert [mark.delta_e for mark in marks] == sorted((m.delta_e for m in marks), reverse=True)
+    on_lens = [m for m in marks if away[m.row, m.column] < 40.0 and not noise[m.row, m.column]]
+    assert len(on_lens) >= 4
+    assert not any(rim[m.row, m.column] or dark[m.row, m.column] for m in marks)
+    for one, two in itertools.combinations(marks, 2):
+        assert np.hypot(one.row - two.row, one.column - two.column) > 20.0
 
 
 def test_a_mark_tells_of_the_pixel_that_was_asked_for(pair: tuple[Image, Image]) -> None:

@@ -83,10 +83,22 @@ def test_the_mask_marks_the_pixels_outside_and_no_other(make_image: MakeImage) -
 
 
 def test_automatic_white_leaves_one_pixel_in_a_hundred_above(make_image: MakeImage) -> None:
-    image = make_image(xyz=ramp())
-    white = automatic_white(image)
-    assert (image.luminance_cd_m2 > white).sum() == 1
+    grey = ramp() / [0.9, 1.0, 1.1]  # the scene's own white
+    white = automatic_white(make_image(xyz=grey))
+    assert white == pytest.approx(100.0)
+    assert (grey[..., 1] > white * (1.0 + 1e-9)).sum() == 1
     assert automatic_white(make_image(xyz=np.zeros((2, 2, 3)))) == 1.0
+
+
+def test_automatic_white_leaves_a_saturated_red_its_colour(make_image: MakeImage) -> None:
+    red = np.array([0.69 / 0.305, 1.0, 0.005 / 0.305])
+    image = make_image(xyz=np.linspace(1.0, 200.0, 2000).reshape(40, 50, 1) * red)
+    image.scene.white_luminance_cd_m2 = "auto"  # type: ignore[attr-defined]
+    picture = develop(image).picture
+    assert picture.over_white_share <= 0.01
+    bright = picture.encoded[30, 10]
+    assert bright[0] > 0.85
+    assert bright[1:].max() < 0.25
 
 
 def test_an_image_is_a_dataset_with_units_and_errors(make_image: MakeImage) -> None:

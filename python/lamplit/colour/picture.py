@@ -33,6 +33,17 @@ class Picture:
     over_white_share: float
 
 
+def linear_rgb(
+    xyz: ArrayLike, *, display: Display, white_xy: ArrayLike, adaptation: Adaptation = "cat16"
+) -> NDArray[np.float64]:
+    """Return the display's linear RGB (…, 3) of XYZ (…, 3), in the unit of XYZ: white has Y = R.
+
+    ``white_xy`` is brought to the display's white by ``adaptation``.
+    """
+    adapt = adaptation_matrix(white_xy, display.white_xy, method=adaptation)
+    return np.asarray(xyz, dtype=np.float64) @ (display.xyz_to_rgb @ adapt).T
+
+
 def to_picture(
     xyz_cd_m2: ArrayLike,
     *,
@@ -61,8 +72,8 @@ def to_picture(
     if not np.isfinite(xyz).all():
         at = np.argwhere(~np.isfinite(xyz))[0].tolist()
         raise LamplitError(f"XYZ is not finite, first at {at}; a picture needs finite numbers")
-    adapt = adaptation_matrix(white_xy, display.white_xy, method=adaptation)
-    linear = xyz @ (display.xyz_to_rgb @ adapt / white_luminance_cd_m2).T
+    linear = linear_rgb(xyz, display=display, white_xy=white_xy, adaptation=adaptation)
+    linear /= white_luminance_cd_m2
     shown = map_to_gamut(linear, display)[0] if gamut == "map" else linear
     outside = outside_gamut(linear)
     return Picture(

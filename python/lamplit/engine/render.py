@@ -71,6 +71,7 @@ def render(
     bands = _bands_per_lane(scene.image.samples, spectral.phases) if keeps_bands else 0
     start = time.perf_counter()
     world = assemble(scene, carrier)
+    scene_hash = scene.scene_hash  # of the files as they were read, whatever becomes of them
     built = time.perf_counter()
     outcome = _trace(scene, world, bands=bands, threads=threads, progress=progress)
     timings = {"build_s": built - start, "trace_s": time.perf_counter() - built}
@@ -90,7 +91,7 @@ def render(
         complete=not outcome.interrupted,
         interrupted=outcome.interrupted,
         version=_core.__version__,
-        command=f"lamplit.render(scene, method={method!r}, colour={colour!r})",
+        command=f"lamplit.render(scene, method={method!r}, colour={colour!r}) of {scene_hash}",
     )
     if image.interrupted:
         raise RenderInterrupted(image)

@@ -15,8 +15,9 @@ if TYPE_CHECKING:
     from lamplit.engine.image import Image
     from lamplit.scene import Scene
 
-#: With ``white_luminance_cd_m2 = "auto"`` this share of the pixels lies below display white.
-_AUTO_BELOW_WHITE_PERCENT = 99.0
+#: With ``white_luminance_cd_m2 = "auto"`` the display can show this share of the pixels' colours
+#: as bright as they are.
+_AUTO_SHOWN_PERCENT = 99.0
 _LABELS = {"srgb": "sRGB", "display-p3": "Display P3", "rec2020": "Rec. 2020"}
 
 
@@ -41,7 +42,7 @@ def develop(image: Image, *, white_luminance_cd_m2: float | None = None) -> Deve
     """Return ``image`` as its scene's ``[display]`` shows it.
 
     ``white_luminance_cd_m2`` stands in for the scene's own, so that two pictures can share one
-    white. ``auto`` takes the luminance that 99 % of the pixels lie below.
+    white. ``auto`` takes that of `automatic_white`.
 
     Raises:
         LamplitError: The display or the white of the scene cannot be used.
@@ -69,10 +70,24 @@ def develop(image: Image, *, white_luminance_cd_m2: float | None = None) -> Deve
 
 
 def automatic_white(image: Image) -> float:
-    """Return the luminance in cd/m² that 99 % of the pixels lie below; 1 for a black picture."""
-    luminance = image.luminance_cd_m2
-    finite = luminance[np.isfinite(luminance)]
-    white = float(np.percentile(finite, _AUTO_BELOW_WHITE_PERCENT)) if finite.size else 0.0
+    """Return the luminance in cd/m² of display white that suits ``image``; 1 for a black picture.
+
+    It is the 99 % percentile, over the pixels, of the largest of linear R, G and B per cd/m² of
+    white: no channel of a saturated red is cut off, which would turn it pink.
+
+    Raises:
+        LamplitError: The display or the white of the scene cannot be used.
+    """
+    from lamplit.colour.picture import linear_rgb
+
+    linear = linear_rgb(
+        image.xyz[np.isfinite(image.xyz).all(axis=-1)],
+        display=scene_display(image.scene),
+        white_xy=scene_white_xy(image.scene),
+        adaptation=image.scene.display.adaptation,
+    )
+    largest = linear.max(axis=-1)
+    white = float(np.percentile(largest, _AUTO_SHOWN_PERCENT)) if largest.size else 0.0
     return white if white > 0.0 else 1.0
 
 

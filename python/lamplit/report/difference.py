@@ -21,13 +21,14 @@ Array = NDArray[np.float64]
 
 _MARKS = 5
 #: Marks keep this share of the picture's smaller side between them.
-_APART = 0.16
-#: Marks differ by this ΔE00 at least, at the same luminance, so that each tells of another colour.
-_ALIKE = 5.0
+_APART = 0.18
 #: Pixels along the smaller side among which marks are looked for.
-_SEARCHED = 300
-#: Below this share of white a pixel is too dark for its chromaticity to be worth a mark.
-_DARK = 0.005
+_SEARCHED = 200
+#: Places searched around one for whether they differ alike, along a side, and how alike: by this
+#: share of their median ΔE00, and this ΔE00 besides.
+_AROUND, _ALIKE, _UNSEEN = 5, 0.2, 0.5
+#: Below this share of white a pixel is too dark for its colour to be worth a mark.
+_DARK = 0.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +102,8 @@ def measure_difference(
     developed_rgb = develop(rgb, white_luminance_cd_m2=developed.white_luminance_cd_m2)
     delta_e = delta_e_2000(rgb.xyz, spectral.xyz, white_xyz=developed.white_xyz)
     if marks is None:
-        places = _telling_places(delta_e, spectral.xyz, developed.white_xyz)
+        luminances = np.stack([spectral.luminance_cd_m2, rgb.luminance_cd_m2])
+        places = _telling_places(delta_e, luminances / developed.white_luminance_cd_m2)
     else:
         check_marks(marks, width=spectral.width, height=spectral.height)
         places = [(row, column) for column, row in marks]
@@ -121,33 +123,38 @@ def measure_difference(
     return Difference(developed_rgb, developed, delta_e, found)
 
 
-def _telling_places(difference: Array, xyz: Array, white_xyz: Array) -> list[tuple[int, int]]:
-    """Return (row, column) of large differences, each of another place and another colour.
+def _telling_places(difference: Array, luminances: Array) -> list[tuple[int, int]]:
+    """Return (row, column) of places apart that differ much and alike, the largest ΔE00 first.
 
-    The map is smoothed first, so that a mark stands for its surroundings and not for one
-    noisy pixel or an edge. What is brighter than white is left out: it looks white in both.
+    ``luminances`` (2, H, W) of both pictures are shares of white. What is nearly black in either
+    is left out, and what is brighter than white in either: it looks white in both.
     """
-    from scipy.ndimage import uniform_filter
-
-    from lamplit.colour.difference import delta_e_2000
-
-    side = min(difference.shape)
-    step = max(1, side // _SEARCHED)
-    smooth = uniform_filter(difference, max(1, side // 40))
-    left, colours = smooth[::step, ::step].copy(), xyz[::step, ::step]
-    luminance = colours[..., 1:2]
-    dark, bright = luminance < _DARK * white_xyz[1], luminance > white_xyz[1]
-    left[(dark | bright)[..., 0]] = -1.0
+    step = max(1, round(min(difference.shape) / _SEARCHED))
+    luminances = luminances[:, ::step, ::step]
+    seen = (luminances.min(axis=0) > _DARK) & (luminances.max(axis=0) <= 1.0)
+    left = _worth(difference[::step, ::step], seen)
     rows, columns = np.ogrid[: left.shape[0], : left.shape[1]]
+    apart = max(2.0, _APART * min(left.shape))
     places: list[tuple[int, int]] = []
     while len(places) < _MARKS and left.max() >= 0.0:
         row, column = (int(index) for index in np.unravel_index(left.argmax(), left.shape))
         places.append((row * step, column * step))
-        mark = colours[row, column]
-        as_bright = mark * (luminance / mark[1])
-        left[delta_e_2000(colours, as_bright, white_xyz=white_xyz) < _ALIKE] = -1.0
-        left[np.hypot(rows - row, columns - column) < max(2.0, _APART * side / step)] = -1.0
-    return places
+        left[np.hypot(rows - row, columns - column) < apart] = -1.0
+    return sorted(places, key=lambda place: -difference[place])
+
+
+def _worth(difference: Array, seen: NDArray[np.bool_]) -> Array:
+    """Return how much a mark (H, W) would tell of its surroundings; -1 for nothing.
+
+    That is the ΔE00 that three quarters of the surroundings exceed, where the place itself is
+    like them: a thin rim, an edge or a noisy pixel is not.
+    """
+    from scipy.ndimage import percentile_filter
+
+    shown = np.where(seen, difference, 0.0)
+    lower, median = (percentile_filter(shown, share, size=_AROUND) for share in (25, 50))
+    like = np.abs(difference - median) <= _ALIKE * median + _UNSEEN
+    return np.where(seen & like, lower, -1.0)
 
 
 def check_marks(marks: Sequence[tuple[int, int]], *, width: int, height: int) -> None:

@@ -135,7 +135,7 @@ def _content(path: Path) -> bytes:
 
 def _understood(raw: RawMesh, unit_mm: float, *, smooth_shading: bool, crease_deg: float) -> Mesh:
     fixed = repair(raw.vertices * unit_mm, raw.triangles)
-    edges = find_edges(fixed.triangles)
+    edges = fixed.edges
     orientation = orient(fixed.vertices, fixed.triangles, edges)
     turn = orientation.turn
     triangles = np.where(turn[:, None], fixed.triangles[:, ::-1], fixed.triangles)

@@ -52,6 +52,11 @@ class RawMesh:
         return RawMesh(self.vertices, self.triangles, normals)
 
 
+def dot(one: Floats, two: Floats) -> Floats:
+    """Return the inner products (n,) of the rows of two arrays (n, 3)."""
+    return np.einsum("ij,ij->i", one, two)
+
+
 def joined(parts: Sequence[RawMesh]) -> RawMesh:
     """Return one mesh of all ``parts``; normals are kept when every part has them."""
     if len(parts) == 1:

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from lamplit.errors import GeometryError
-from lamplit.scene.meshes.raw import Floats, Indices
-from lamplit.scene.meshes.topology import find_edges, merge_equal
+from lamplit.scene.meshes.raw import Floats, Indices, dot
+from lamplit.scene.meshes.topology import Edges, find_edges, merge_equal
 
 #: Vertices on open edges closer than this share of the mesh's diagonal are one vertex.
 _SEAM = 1e-6
@@ -19,12 +19,13 @@ _SEAM = 1e-6
 class Repaired:
     """Merged vertices (n, 3) in mm, triangles (m, 3), and where they come from.
 
-    ``origin`` (raw vertices,): the merged vertex of each vertex of the file; ``source`` (m, 3):
-    the triangles in the file's own vertices.
+    ``edges``: those of ``triangles``; ``origin`` (raw vertices,): the merged vertex of each vertex
+    of the file; ``source`` (m, 3): the triangles in the file's own vertices.
     """
 
     vertices: Floats
     triangles: Indices
+    edges: Edges
     origin: Indices
     source: Indices
     notices: tuple[str, ...]
@@ -59,6 +60,7 @@ def repair(vertices_mm: Floats, triangles: Indices) -> Repaired:
         once = _first_of_doubles(merged[keep])
         if len(once) < len(keep):
             notices.append(f"{len(keep) - len(once)} triangles that stood there twice were removed")
+            edges = find_edges(merged[keep[once]])
         keep = keep[once]
     kept = merged[keep]
     flat = _without_area(vertices, kept)
@@ -66,7 +68,7 @@ def repair(vertices_mm: Floats, triangles: Indices) -> Repaired:
         raise GeometryError("the mesh is empty: no triangle has an area")
     if flat:
         notices.append(f"{flat} degenerate triangles have no area, and no ray will meet them")
-    return Repaired(vertices, kept, origin, triangles[keep], tuple(notices))
+    return Repaired(vertices, kept, edges, origin, triangles[keep], tuple(notices))
 
 
 def _distinct(triangles: Indices) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
@@ -109,8 +111,8 @@ def _first_of_doubles(triangles: Indices) -> Indices:
 
 
 def _without_area(vertices: Floats, triangles: Indices) -> int:
-    corners = vertices[triangles]
-    one, two = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    doubled = np.linalg.norm(np.cross(one, two), axis=1)
-    longest = np.maximum((one * one).sum(axis=1), (two * two).sum(axis=1))
-    return int((doubled <= 1e-12 * longest).sum())
+    start, second, third = (vertices[triangles[:, corner]] for corner in range(3))
+    one, two = second - start, third - start
+    normal = np.cross(one, two)
+    longest = np.maximum(dot(one, one), dot(two, two))
+    return int((np.sqrt(dot(normal, normal)) <= 1e-12 * longest).sum())

@@ -5,25 +5,23 @@ from __future__ import annotations
 
 import numpy as np
 
-from lamplit.scene.meshes.raw import Floats, Indices
+from lamplit.scene.meshes.raw import Floats, Indices, dot
 from lamplit.scene.meshes.topology import Edges
 
 
-def face_normals(vertices: Floats, triangles: Indices) -> Floats:
-    """Return unit normals (m, 3) of triangles (m, 3); zero where a triangle has no area."""
+def normals_and_angles(vertices: Floats, triangles: Indices) -> tuple[Floats, Floats]:
+    """Return the unit normals (m, 3) of triangles (m, 3) and the angles in radians at their corners.
+
+    A triangle without area has a normal of zero. At each corner two sides span the same area, so
+    that tan of the angle is twice the area over the sides' inner product.
+    """
     one, two, three = (vertices[triangles[:, corner]] for corner in range(3))
-    normals = np.cross(two - one, three - one)
-    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-    return np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0)
-
-
-def corner_angles(vertices: Floats, triangles: Indices) -> Floats:
-    """Return the angle in radians (m, 3) at each corner of triangles (m, 3)."""
-    points = vertices[triangles]
-    onward = points[:, [1, 2, 0]] - points
-    back = points[:, [2, 0, 1]] - points
-    across = np.linalg.norm(np.cross(onward, back), axis=2)
-    return np.arctan2(across, (onward * back).sum(axis=2))
+    sides = (two - one, three - two, one - three)
+    normals = np.cross(sides[0], -sides[2])
+    doubled = np.sqrt(dot(normals, normals))
+    inner = [-dot(sides[corner], sides[corner - 1]) for corner in range(3)]
+    angles = np.arctan2(doubled[:, None], np.stack(inner, axis=1))
+    return np.divide(normals, doubled[:, None], where=doubled[:, None] > 0, out=0 * normals), angles
 
 
 def smooth(
@@ -39,9 +37,9 @@ def smooth(
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
 
-    normals = face_normals(vertices, triangles)
+    normals, angles = normals_and_angles(vertices, triangles)
     flat = triangles.reshape(-1)
-    bend = (normals[edges.pairs[:, 0]] * normals[edges.pairs[:, 1]]).sum(axis=1)
+    bend = dot(normals[edges.pairs[:, 0]], normals[edges.pairs[:, 1]])
     soft = edges.agree & (bend >= np.cos(np.radians(crease_deg)) - 1e-12)
     one, two = edges.pair_slots[soft, 0], edges.pair_slots[soft, 1]
     one_end, two_end = _next_corner(one), _next_corner(two)
@@ -50,8 +48,7 @@ def smooth(
     links = coo_matrix((np.ones(len(rows), np.int8), (rows, columns)), shape=(len(flat), len(flat)))
     count, labels = connected_components(links.tocsr(), directed=False)
     group = labels.astype(np.int64)
-    angles = corner_angles(vertices, triangles).reshape(-1)
-    weighted = np.repeat(normals, 3, axis=0) * angles[:, None]
+    weighted = (normals[:, None, :] * angles[:, :, None]).reshape(-1, 3)
     sums = np.stack([np.bincount(group, weighted[:, i], minlength=count) for i in range(3)], axis=1)
     lengths = np.linalg.norm(sums, axis=1, keepdims=True)
     points = np.empty((count, 3))
@@ -62,8 +59,7 @@ def smooth(
 
 def facing(normals: Floats, vertices: Floats, triangles: Indices) -> Floats:
     """Return unit ``normals`` (n, 3), each turned to the side that its triangles face."""
-    faces = face_normals(vertices, triangles)
-    angles = corner_angles(vertices, triangles)
+    faces, angles = normals_and_angles(vertices, triangles)
     mean = np.zeros_like(vertices)
     for corner in range(3):
         for axis in range(3):
