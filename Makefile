@@ -19,17 +19,19 @@ $(VENV)/.ready: requirements/dev.lock
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10))' \
 	  || { echo "Lamplit needs Python 3.10 or later: make PYTHON=python3.12 ..."; exit 1; }
 	@command -v cargo >/dev/null || { echo "Lamplit needs a Rust toolchain (https://rustup.rs)"; exit 1; }
-	$(PYTHON) -m venv --clear $(VENV)
-	$(BIN)/python -m pip install --quiet --no-deps -r requirements/dev.lock
+	@echo "Installing the Python libraries into $(VENV): once, a minute or two ..."
+	@$(PYTHON) -m venv --clear $(VENV)
+	@$(BIN)/python -m pip install --quiet --no-deps -r requirements/dev.lock
 	@touch $@
 
 # The compiled core and the package, installed in place.
 $(CORE): $(VENV)/.ready $(RUST) pyproject.toml
-	@PIP_QUIET=1 VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --locked --quiet
+	@echo "Compiling the core: half a minute ..."
+	@PIP_QUIET=1 VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --locked --quiet >/dev/null
 	@touch $@
 
 demo: $(CORE) ## render and measure the example rear lamp; says which files to open
-	$(BIN)/python examples/demo.py
+	@$(BIN)/python examples/demo.py
 
 test: $(CORE) ## run every test: Rust, Python, doctests, the wheel
 	cargo test --workspace --locked --quiet

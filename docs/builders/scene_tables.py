@@ -163,7 +163,8 @@ def _model(node: Node) -> str:
 def _array(node: Node) -> str:
     parts = node.get("prefixItems")
     if parts is None:
-        return f"list of {_values(node['items'])}s"
+        noun = _values(node["items"])
+        return f"list of {noun}es" if noun.endswith("x") else f"list of {noun}s"
     if all(part.get("type") == "number" for part in parts):
         return f"{len(parts)} numbers"
     return f"{len(parts)} times {_values(parts[0])}"

@@ -5,6 +5,7 @@
 >>> scene = ll.load_scene("lamp/scene.toml")  # doctest: +SKIP
 >>> image = ll.render(scene, samples=16)  # doctest: +SKIP
 >>> image.luminance_cd_m2.mean()  # doctest: +SKIP
+>>> ll.write_picture(image, "out")  # doctest: +SKIP
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from lamplit._core import __version__
     from lamplit.engine import Comparison, Image, RenderInterrupted, compare, render
     from lamplit.errors import LamplitError
+    from lamplit.report.picture_files import write_picture
     from lamplit.scene import Scene, check_scene, load_scene
     from lamplit.spectrum import SpectralDistribution
 
@@ -31,6 +33,7 @@ _HOMES = {
     "compare": "lamplit.engine",
     "load_scene": "lamplit.scene",
     "render": "lamplit.engine",
+    "write_picture": "lamplit.report.picture_files",
 }
 
 __all__ = [
@@ -45,6 +48,7 @@ __all__ = [
     "compare",
     "load_scene",
     "render",
+    "write_picture",
 ]
 
 

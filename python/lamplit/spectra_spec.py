@@ -166,7 +166,9 @@ class NamedSource(RootModel[Annotated[str, Field(strict=True, min_length=1)]]):
 class BlackbodySource(_Form):
     """Planck's law at one temperature."""
 
-    temperature_kelvin: Annotated[Positive, Field(ge=100, le=1e5)]
+    temperature_kelvin: Annotated[Positive, Field(ge=100, le=1e5)] = Field(
+        description="its temperature"
+    )
 
     def distribution(self) -> SpectralDistribution:
         """Return the spectral radiance."""
@@ -176,9 +178,15 @@ class BlackbodySource(_Form):
 class LedSource(_Form):
     """A single-colour LED by its peak and its full width at half maximum."""
 
-    led_peak_nm: Annotated[Positive, Field(ge=100, le=3000)]
-    led_fwhm_nm: Annotated[Positive, Field(ge=0.1, le=500)]
-    model: LedModel = "ohno"
+    led_peak_nm: Annotated[Positive, Field(ge=100, le=3000)] = Field(
+        description="where it shines most"
+    )
+    led_fwhm_nm: Annotated[Positive, Field(ge=0.1, le=500)] = Field(
+        description="full width at half of the maximum"
+    )
+    model: LedModel = Field(
+        default="ohno", description="shape of the spectrum: Ohno's, or a plain Gaussian"
+    )
 
     def distribution(self) -> SpectralDistribution:
         """Return the relative spectral power, 1 at the peak."""

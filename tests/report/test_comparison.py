@@ -75,7 +75,7 @@ def test_marks_are_found_where_the_pictures_differ(pair: tuple[Image, Image]) ->
 def test_marks_stand_in_fields_and_not_on_rims_dark_places_or_single_pixels(
     make_image: MakeImage,
 ) -> None:
-    """A lens that differs a little, in a thin rim, beside a dark part and noise that differ much."""
+    """A lens differs a little; a thin rim, a dark part and single pixels differ much."""
     xyz = np.full((120, 200, 1), 300.0) * np.array([0.95, 1.0, 1.09])
     y, x = np.mgrid[0:120, 0:200]
     away = np.hypot(x - 80, y - 60)

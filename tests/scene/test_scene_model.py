@@ -27,6 +27,23 @@ def test_the_schema_knows_every_table() -> None:
     assert names >= {"sources", "materials", "objects"}
 
 
+def test_every_key_of_the_schema_says_what_it_means() -> None:
+    schema = scene_schema()
+    silent = [
+        f"{name}.{key}"
+        for name, model in ({"Scene": schema} | schema["$defs"]).items()
+        for key, node in model.get("properties", {}).items()
+        if not node.get("description") and "const" not in node
+    ]
+    assert silent == []
+
+
+def test_a_pixel_takes_as_many_samples_as_the_core_knows_points(sound: Path) -> None:
+    assert load_scene(sound, overrides={"image.samples": 256**2}).image.samples == 65_536
+    with pytest.raises(SceneError, match=r"image\.samples.*65536"):
+        load_scene(sound, overrides={"image.samples": 257**2})
+
+
 def test_a_hash_follows_values_and_files_and_nothing_else(sound: Path, tmp_path: Path) -> None:
     text = sound.read_text()
     original = load_scene(sound).scene_hash

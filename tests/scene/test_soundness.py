@@ -196,6 +196,23 @@ def test_a_report_names_every_fault_and_goes_on(tmp_path: Path) -> None:
     assert any(f.level == "notice" and "thin surface" in f.message for f in report.findings)
 
 
+def test_what_nothing_uses_is_named(tmp_path: Path) -> None:
+    led = {"led_peak_nm": 624, "led_fwhm_nm": 18}
+    scene = scene_of(
+        [ball((0, 0, 0), 10.0, material="paint")],
+        tmp_path,
+        materials={"paint": {"kind": "diffuse", "reflectance": 0.5}, "lens": {"library": "bk7"}},
+        sources={"key": led, "fill": led, "copy": "D65"},
+        ambient={"source": "key", "luminance_cd_m2": 1.0},
+    )
+    found = [(f.level, f.subject, f.message) for f in check_scene(scene).findings]
+    assert found == [
+        ("notice", "materials.lens", "nothing uses 'lens'"),
+        ("notice", "sources.fill", "nothing uses 'fill'"),
+        ("notice", "sources.copy", "nothing uses 'copy'"),
+    ]
+
+
 def test_a_mesh_in_the_wrong_unit_is_doubted(tmp_path: Path) -> None:
     trimesh.creation.box().export(tmp_path / "a.stl")
     own: Table = {"kind": "mesh", "file": "a.stl", "unit": "m", "scale": 1000.0}

@@ -30,15 +30,6 @@ from lamplit.cli.stopping import stop_signals
 
 if TYPE_CHECKING:
     from lamplit.engine.image import Image
-    from lamplit.report.develop import Developed
-
-#: What lies in each file of the results.
-_CONTENTS = {
-    "picture.png": "the picture, tagged for the display",
-    "picture.exr": "XYZ in cd/m² with standard errors, linear RGB, spectra if asked for",
-    "summary.json": "luminance, chromaticity, gamut, how to make it again",
-    "gamut-mask.png": "cyan: colours that the display cannot show",
-}
 
 
 def render(
@@ -68,9 +59,9 @@ def render(
     from lamplit import engine
     from lamplit.cli.closing import end_if_refused
     from lamplit.report.atomic import prepare_output
-    from lamplit.report.develop import check_display, develop
+    from lamplit.report.develop import check_display
+    from lamplit.report.picture_files import picture_files, write_picture
     from lamplit.report.progress import Progress
-    from lamplit.report.summary import summary
     from lamplit.scene import load_scene
 
     changed = overrides(
@@ -78,8 +69,8 @@ def render(
     )
     loaded = load_scene(scene_file(scene), overrides=changed)
     check_display(loaded)
-    names = [name for name in _CONTENTS if gamut_mask or name != "gamut-mask.png"]
-    prepare_output(output, names)
+    contents = picture_files(gamut_mask=gamut_mask)
+    prepare_output(output, contents)
     with stop_signals() as stop, Progress("Rendering") as progress:
         try:
             image = engine.render(
@@ -93,41 +84,19 @@ def render(
             image = stopped.image
     stop.end_if_empty(image)
     image = replace(image, command=command_line(sys.argv))
-    developed = develop(image)
-    numbers = summary(image, developed)
-    _write(output, image, developed, numbers, bits=bits, spectral=spectral, mask=gamut_mask)
-    _tell(output, image, numbers, names)
+    numbers = write_picture(
+        image,
+        output,
+        bits=16 if bits is Bits.sixteen else 8,
+        spectral=spectral,
+        gamut_mask=gamut_mask,
+    )
+    _tell(output, image, numbers, contents)
     stop.end_if_interrupted(image)
     end_if_refused(image, allow_lost=allow_lost)
 
 
-def _write(
-    output: Path,
-    image: Image,
-    developed: Developed,
-    numbers: dict[str, Any],
-    *,
-    bits: Bits,
-    spectral: bool,
-    mask: bool,
-) -> None:
-    from lamplit.report.atomic import write_json
-    from lamplit.report.exr import write_exr
-    from lamplit.report.gamut_mask import gamut_mask_picture
-    from lamplit.report.png import write_png
-    from lamplit.report.provenance import text_provenance
-
-    picture, display, texts = (developed.picture, developed.display, text_provenance(image))
-    depth = 16 if bits is Bits.sixteen else 8
-    write_png(output / "picture.png", picture.encoded, display, bits=depth, provenance=texts)
-    write_exr(output / "picture.exr", image, developed, spectral=spectral)
-    write_json(output / "summary.json", numbers)
-    if mask:
-        masked = gamut_mask_picture(picture)
-        write_png(output / "gamut-mask.png", masked, display, provenance=texts)
-
-
-def _tell(output: Path, image: Image, numbers: dict[str, Any], names: list[str]) -> None:
+def _tell(output: Path, image: Image, numbers: dict[str, Any], contents: dict[str, str]) -> None:
     from lamplit.cli.closing import show_results
 
     luminance, display = numbers["luminance_cd_m2"], numbers["display"]
@@ -141,4 +110,4 @@ def _tell(output: Path, image: Image, numbers: dict[str, Any], names: list[str])
         f"outside {display['label']}": f"{100 * display['out_of_gamut_share']:.1f} % of the pixels",
         "brighter than white": f"{100 * display['over_white_share']:.1f} % of the pixels",
     }
-    show_results(image, rows, output, {name: _CONTENTS[name] for name in names})
+    show_results(image, rows, output, contents)

@@ -32,6 +32,12 @@ from lamplit.lamps.solids import Solid, cuboid, repeated
 _BOARD_TOP_Z, _BOARD_BACK_Z = -2.5, -4.1
 _MARGIN_MM = 7.0
 _PMMA_INDEX = 1.49
+#: Reflectances at `_BANDS_NM`, drawn by eye: ceramic, a bare red die, and silicone with a phosphor
+#: that turns blue into amber.
+_BANDS_NM = [380, 430, 480, 530, 580, 630, 680, 730]
+_CERAMIC = [0.5, 0.8, 0.86, 0.88, 0.88, 0.88, 0.88, 0.88]
+_BARE_DIE = [0.12, 0.12, 0.14, 0.2, 0.3, 0.36, 0.38, 0.4]
+_PHOSPHOR = [0.2, 0.08, 0.08, 0.45, 0.86, 0.9, 0.9, 0.9]
 
 
 class Parameters(LampParameters):
@@ -60,8 +66,13 @@ class Parameters(LampParameters):
     die_size_mm: Annotated[float, Field(ge=0.3, le=1.4, description="side of the square dies")] = (
         1.0
     )
-    lit: Annotated[bool, Field(description="put a small red light (624 nm) at each die")] = False
+    lit: Annotated[bool, Field(description="put a small light of its colour at each die")] = False
     triangles: Triangles = 300_000
+
+    @property
+    def amber(self) -> bool:
+        """Whether it is an indicator of phosphor-converted amber; else red dies of 624 nm."""
+        return self.cover_colour != "red"
 
     @property
     def columns_rows(self) -> tuple[int, int]:
@@ -145,8 +156,9 @@ def _tables(p: Parameters, layout: _Layout) -> list[Table]:
     height = 2.0 * (layout.outline.half_height_mm + housing.outer_offset)
     distance = 4.2 * max(width, 1.6 * height)
     places = grid_mm(*p.columns_rows, p.pitch_mm)
+    source = "pc-amber-led" if p.amber else "red-led-624"
     lights = [
-        studio.sphere_light(f"die-{k + 1}", "red-led-624", 2_500.0, (place[0], place[1], 0.6), 0.4)
+        studio.sphere_light(f"die-{k + 1}", source, 2_500.0, (place[0], place[1], 0.6), 0.4)
         for k, place in enumerate(places)
         if p.lit
     ]
@@ -154,16 +166,15 @@ def _tables(p: Parameters, layout: _Layout) -> list[Table]:
     return [
         studio.camera(
             (0.0, -2.0, 5.0),
-            azimuth_deg=15.0,
-            elevation_deg=9.0,
+            azimuth_deg=11.0,
+            elevation_deg=5.0,
             distance_mm=distance,
-            view_deg=13.5,
+            view_deg=11.5,
         ),
-        *studio.picture(white_luminance_cd_m2=700.0 if p.cover_colour == "smoke" else 950.0),
+        *studio.picture(white_luminance_cd_m2=600.0),
         studio.hall(3e-3),
         *studio.surroundings(190.0, 30.0, 120.0),
-        studio.soft_box(1500.0, (0.0, 250.0, 1500.0), (4000.0, 2000.0), edge_softness=0.7),
-        studio.soft_box(9000.0, (-420.0, 235.0, 1000.0), (760.0, 110.0)),
+        studio.soft_box(4000.0, (-230.0, -12.0, 1000.0), (520.0, 34.0), edge_softness=0.5),
         studio.soft_box(9000.0, (100.0, 1000.0, 600.0), (1100.0, 300.0)),
         studio.soft_box(6000.0, (-900.0, 100.0, 450.0), (160.0, 900.0)),
         studio.point_light("key", "D65", 4000.0, (-300.0, 700.0, 1200.0)),
@@ -172,7 +183,10 @@ def _tables(p: Parameters, layout: _Layout) -> list[Table]:
         mesh_object("cover", "cover", crease_deg=35.0),
         *([collimators] if p.optics == "tir" else []),
         mesh_object(
-            "tray", "aluminium-bezel", crease_deg=35.0, comment="cups, or the mask between"
+            "tray",
+            "black-abs" if p.optics == "tir" else "aluminium-bezel",
+            crease_deg=35.0,
+            comment="the mask between the collimators, or cups",
         ),
         mesh_object("housing", "black-abs", crease_deg=40.0),
         mesh_object("packages", "package"),
@@ -202,14 +216,14 @@ def _materials(p: Parameters) -> list[Table]:
     return [
         Table("materials.cover", {"library": lens_material(p.cover_colour)}),
         Table("materials.solder-mask", _glossy(masks[p.board]), "drawn by eye, not measured"),
-        Table("materials.package", _glossy([0.5, 0.8, 0.86, 0.88, 0.88, 0.88, 0.88, 0.88])),
-        Table("materials.die", _glossy([0.12, 0.12, 0.14, 0.2, 0.3, 0.36, 0.38, 0.4], 1.8)),
+        Table("materials.package", _glossy(_PHOSPHOR if p.amber else _CERAMIC)),
+        Table("materials.die", _glossy(_PHOSPHOR if p.amber else _BARE_DIE, 1.8)),
     ]
 
 
 def _glossy(reflectance: list[float], index: float = 1.5) -> dict[str, Any]:
     table = {
-        "wavelengths_nm": [380, 430, 480, 530, 580, 630, 680, 730],
+        "wavelengths_nm": _BANDS_NM,
         "values": reflectance,
         "extension": "constant",
     }

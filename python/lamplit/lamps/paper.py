@@ -55,11 +55,11 @@ def build(parameters: Parameters) -> Lamp:
         studio.camera(
             (0.08 * size, 0.8 * size, 0.0),
             azimuth_deg=-14.0,
-            elevation_deg=11.0,
+            elevation_deg=20.0,
             distance_mm=9.0 * size,
             view_deg=22.0,
         ),
-        *studio.picture(white_luminance_cd_m2=1000.0),
+        *studio.picture(white_luminance_cd_m2=1000.0, sampling="sobol"),
         Table("ambient", {"source": "D65", "luminance_cd_m2": 120.0}),
         Table(
             "background",

@@ -43,10 +43,11 @@ def camera(
     return Table("camera", values, comment)
 
 
-def picture(*, white_luminance_cd_m2: float, width: int = 640, height: int = 400) -> list[Table]:
-    """Return the image and display tables."""
+def picture(*, white_luminance_cd_m2: float, sampling: str = "grid") -> list[Table]:
+    """Return the image and display tables; Sobol ``sampling`` turns moiré into fine noise."""
+    image = {"width": 640, "height": 400, "samples": 16, "sampling": sampling}
     return [
-        Table("image", {"width": width, "height": height, "samples": 16}, "samples: per pixel"),
+        Table("image", image, "samples: per pixel"),
         Table(
             "display",
             {"space": "srgb", "white_luminance_cd_m2": white_luminance_cd_m2, "white": "D65"},

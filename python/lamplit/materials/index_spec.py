@@ -215,8 +215,8 @@ class IndexPageFile(PageForm):
 class ConstantComplexIndex(_Form):
     """The same n and k at every wavelength."""
 
-    n: _NotNegative
-    k: _NotNegative
+    n: _NotNegative = Field(description="refractive index")
+    k: _NotNegative = Field(description="extinction coefficient")
 
     def index(self) -> SpectralDistribution:
         """Return n(λ)."""

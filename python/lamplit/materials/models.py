@@ -74,7 +74,7 @@ class Dielectric(_Material):
     """Clear or dyed matter that light goes through: plastic, glass."""
 
     kind: Literal["dielectric"]
-    refractive_index: IndexSpec
+    refractive_index: IndexSpec = Field(description="n(λ)")
     internal_transmittance: TransmittanceSpec | None = Field(
         default=None, description="left out: perfectly clear"
     )
@@ -98,7 +98,7 @@ class Conductor(_Material):
     """A metal by its complex index n + i k."""
 
     kind: Literal["conductor"]
-    refractive_index: ComplexIndexSpec
+    refractive_index: ComplexIndexSpec = Field(description="n(λ) and k(λ)")
     factor: Annotated[Number, Field(ge=0, le=1)] = Field(
         default=1.0, description="times the reflectance: a lacquer's or a rough film's loss"
     )
@@ -113,7 +113,9 @@ class Conductor(_Material):
 
 
 class _Reflecting(_Material):
-    reflectance: FractionSpec
+    reflectance: FractionSpec = Field(
+        description="share of the light that comes back, by wavelength"
+    )
 
     def reflectance_at(self, wavelengths_nm: ArrayLike) -> Array:
         """Return the spectral reflectance, 0 to 1."""
@@ -137,9 +139,9 @@ class Checker(_Material):
     """A matt surface of squares in two reflectances, on planes, discs and boxes."""
 
     kind: Literal["checker"]
-    reflectance_a: FractionSpec
-    reflectance_b: FractionSpec
-    square_mm: Positive
+    reflectance_a: FractionSpec = Field(description="of the first squares")
+    reflectance_b: FractionSpec = Field(description="of the other squares")
+    square_mm: Positive = Field(description="side of a square")
     default_highlight_exponent: ClassVar[float] = 1.0
 
     def reflectance_a_at(self, wavelengths_nm: ArrayLike) -> Array:
@@ -155,7 +157,7 @@ class Glossy(_Reflecting):
     """An opaque body: what Fresnel does not reflect reaches a matt base."""
 
     kind: Literal["glossy"]
-    refractive_index: IndexSpec
+    refractive_index: IndexSpec = Field(description="n(λ) of the surface, for Fresnel")
 
     def index(self, wavelengths_nm: ArrayLike) -> Array:
         """Return n(λ) of the surface."""

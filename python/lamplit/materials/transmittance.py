@@ -95,7 +95,7 @@ class SpdxTransmittance(SpdxSpectrum, _Measured):
 class ConstantTransmittance(_Measured):
     """The same t at every wavelength."""
 
-    value: Number
+    value: Number = Field(description="t, above 0 and at most 1")
 
     def distribution(self) -> SpectralDistribution:
         """Return t, the same at every wavelength."""
@@ -116,8 +116,12 @@ class Dye(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    lambda50_nm: Annotated[Positive, Field(ge=100, le=3000)]
-    width_nm: Annotated[Positive, Field(ge=0.1, le=500)]
+    lambda50_nm: Annotated[Positive, Field(ge=100, le=3000)] = Field(
+        description="where half the light goes through"
+    )
+    width_nm: Annotated[Positive, Field(ge=0.1, le=500)] = Field(
+        description="w: the smaller, the sharper the edge"
+    )
     thickness_mm: Positive = Field(default=3.0, description="where lambda50_nm holds, mm")
     cap_per_mm: Positive = Field(default=5.0, description="highest absorption, 1/mm")
     floor_per_mm: Annotated[Number, Field(ge=0)] = Field(
@@ -135,7 +139,7 @@ class Dye(BaseModel):
 class DyeTransmittance(Absorber):
     """An analytic dye."""
 
-    dye: Dye
+    dye: Dye = Field(description="its edge")
 
     def absorption_per_mm(self, wavelengths_nm: ArrayLike) -> Array:
         """Return α of the dye."""

@@ -24,9 +24,9 @@ _MARKS = 5
 _APART = 0.18
 #: Pixels along the smaller side among which marks are looked for.
 _SEARCHED = 200
-#: Places searched around one for whether they differ alike, along a side, and how alike: by this
-#: share of their median ΔE00, and this ΔE00 besides.
-_AROUND, _ALIKE, _UNSEEN = 5, 0.2, 0.5
+#: A mark's surroundings, places along a side, and how far its ΔE00 is from theirs: by this share,
+#: and by this ΔE00 besides.
+_AROUND, _ALIKE, _UNSEEN = 5, 0.25, 0.5
 #: Below this share of white a pixel is too dark for its colour to be worth a mark.
 _DARK = 0.02
 
@@ -102,8 +102,8 @@ def measure_difference(
     developed_rgb = develop(rgb, white_luminance_cd_m2=developed.white_luminance_cd_m2)
     delta_e = delta_e_2000(rgb.xyz, spectral.xyz, white_xyz=developed.white_xyz)
     if marks is None:
-        luminances = np.stack([spectral.luminance_cd_m2, rgb.luminance_cd_m2])
-        places = _telling_places(delta_e, luminances / developed.white_luminance_cd_m2)
+        seen = _seen(spectral, developed) & _seen(rgb, developed_rgb)
+        places = _telling_places(delta_e, seen)
     else:
         check_marks(marks, width=spectral.width, height=spectral.height)
         places = [(row, column) for column, row in marks]
@@ -123,16 +123,19 @@ def measure_difference(
     return Difference(developed_rgb, developed, delta_e, found)
 
 
-def _telling_places(difference: Array, luminances: Array) -> list[tuple[int, int]]:
+def _seen(image: Image, developed: Developed) -> NDArray[np.bool_]:
+    """Return where (H, W) a colour is neither nearly black nor paled by the display's limit."""
+    dark = image.luminance_cd_m2 < _DARK * developed.white_luminance_cd_m2
+    return ~dark & (developed.picture.linear.max(axis=-1) <= 1.0)
+
+
+def _telling_places(difference: Array, seen: NDArray[np.bool_]) -> list[tuple[int, int]]:
     """Return (row, column) of places apart that differ much and alike, the largest ΔE00 first.
 
-    ``luminances`` (2, H, W) of both pictures are shares of white. What is nearly black in either
-    is left out, and what is brighter than white in either: it looks white in both.
+    They are looked for where ``seen`` (H, W).
     """
     step = max(1, round(min(difference.shape) / _SEARCHED))
-    luminances = luminances[:, ::step, ::step]
-    seen = (luminances.min(axis=0) > _DARK) & (luminances.max(axis=0) <= 1.0)
-    left = _worth(difference[::step, ::step], seen)
+    left = _worth(difference[::step, ::step], seen[::step, ::step])
     rows, columns = np.ogrid[: left.shape[0], : left.shape[1]]
     apart = max(2.0, _APART * min(left.shape))
     places: list[tuple[int, int]] = []
@@ -151,10 +154,9 @@ def _worth(difference: Array, seen: NDArray[np.bool_]) -> Array:
     """
     from scipy.ndimage import percentile_filter
 
-    shown = np.where(seen, difference, 0.0)
-    lower, median = (percentile_filter(shown, share, size=_AROUND) for share in (25, 50))
-    like = np.abs(difference - median) <= _ALIKE * median + _UNSEEN
-    return np.where(seen & like, lower, -1.0)
+    around = percentile_filter(np.where(seen, difference, 0.0), 25, size=_AROUND)
+    like = np.abs(difference - around) <= _ALIKE * around + _UNSEEN
+    return np.where(seen & like, around, -1.0)
 
 
 def check_marks(marks: Sequence[tuple[int, int]], *, width: int, height: int) -> None:

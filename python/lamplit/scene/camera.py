@@ -15,12 +15,14 @@ from lamplit.spectra_spec import NamedSource, SourceSpec
 
 #: The most pixels one picture may have.
 MOST_PIXELS = 100_000_000
+#: The most samples one pixel may have: the core knows this many points of the Sobol sequence.
+MOST_SAMPLES = 65_536
 
 Chromaticity: TypeAlias = Annotated[tuple[Number, Number], Field(strict=False)]
 
 
 class _Camera(Table):
-    position_mm: Point
+    position_mm: Point = Field(description="where the camera stands")
     target_mm: Point = Field(description="the point in the middle of the picture")
     up: Direction = Field(default=(0.0, 1.0, 0.0), description="this way is up in the picture")
 
@@ -66,12 +68,29 @@ class ImageSettings(Table):
 
     width: int = Field(default=640, ge=1, le=16384, description="pixels")
     height: int = Field(default=400, ge=1, le=16384, description="pixels")
-    samples: int = Field(default=16, ge=1, le=1_000_000, description="samples per pixel")
-    sampling: Literal["grid", "sobol"] = "grid"
-    filter: Literal["box", "tent", "gaussian"] = "gaussian"
-    seed: int = Field(default=1, ge=0, lt=2**63)
-    observer: Literal["cie-1931-2", "cie-1964-10", "cie-2015-2"] = "cie-1931-2"
-    wavelength_range_nm: Annotated[tuple[Number, Number], Field(strict=False)] = (380.0, 780.0)
+    samples: int = Field(
+        default=16,
+        ge=1,
+        le=MOST_SAMPLES,
+        description="rays from the camera per pixel; a grid needs a square number",
+    )
+    sampling: Literal["grid", "sobol"] = Field(
+        default="grid",
+        description="an even grid in each pixel, or scrambled Sobol points: no moiré",
+    )
+    filter: Literal["box", "tent", "gaussian"] = Field(
+        default="gaussian",
+        description="how samples spread about the pixel's middle",
+    )
+    seed: int = Field(
+        default=1, ge=0, lt=2**63, description="of all random numbers: the same, the same picture"
+    )
+    observer: Literal["cie-1931-2", "cie-1964-10", "cie-2015-2"] = Field(
+        default="cie-1931-2", description="whose colour-matching functions give X, Y and Z"
+    )
+    wavelength_range_nm: Annotated[tuple[Number, Number], Field(strict=False)] = Field(
+        default=(380.0, 780.0), description="the lowest and the highest wavelength that is followed"
+    )
 
     @model_validator(mode="after")
     def _hangs_together(self) -> ImageSettings:
@@ -101,15 +120,19 @@ class ImageSettings(Table):
 class CustomDisplay(Table):
     """A display by its primaries, its white and its gamma."""
 
-    primaries_xy: Annotated[tuple[Chromaticity, Chromaticity, Chromaticity], Field(strict=False)]
-    white_xy: Chromaticity
-    gamma: Annotated[Positive, Field(le=10.0)]
+    primaries_xy: Annotated[
+        tuple[Chromaticity, Chromaticity, Chromaticity], Field(strict=False)
+    ] = Field(description="chromaticities x, y of red, green and blue")
+    white_xy: Chromaticity = Field(description="chromaticity x, y of its white")
+    gamma: Annotated[Positive, Field(le=10.0)] = Field(
+        description="light is the display value to this power"
+    )
 
 
 class IccDisplay(Table):
     """A display by its ICC profile."""
 
-    icc: FileName
+    icc: FileName = Field(description="profile file below the scene's folder")
 
 
 def _display_form(value: object) -> str:
@@ -129,12 +152,18 @@ DisplaySpace: TypeAlias = Annotated[
 class DisplaySettings(Table):
     """How the tristimulus values become a picture on a display."""
 
-    space: DisplaySpace = "srgb"
+    space: DisplaySpace = Field(default="srgb", description="the display that the picture is for")
     white_luminance_cd_m2: Positive | Literal["auto"] = Field(
-        default="auto", description="this luminance becomes the display's white"
+        default="auto",
+        description="this luminance becomes the display's white; auto: 99 % of the pixels fit",
     )
     white: SourceSpec = Field(
         default=NamedSource("D65"), description="the white that the eye is adapted to"
     )
-    adaptation: Literal["cat16", "bradford", "none"] = "cat16"
-    gamut: Literal["map", "clip"] = "map"
+    adaptation: Literal["cat16", "bradford", "none"] = Field(
+        default="cat16", description="how colours move from the scene's white to the display's"
+    )
+    gamut: Literal["map", "clip"] = Field(
+        default="map",
+        description="colours that the display lacks: map keeps their hue, clip shifts it",
+    )

@@ -23,14 +23,17 @@ class HallSettings(Table):
     dispersion_groups: Literal[1, 2, 4, 8, 16] = Field(
         default=1, description="directions that the lanes share at a dispersive refraction"
     )
-    shadows: bool = True
+    shadows: bool = Field(
+        default=True,
+        description="whether bodies take light from what lies behind them",
+    )
 
 
 class Radiator(Table):
     """A spectrum with a strength."""
 
-    source: SourceSpec
-    luminance_cd_m2: NotNegative
+    source: SourceSpec = Field(description="the shape of the spectrum; its scale has no meaning")
+    luminance_cd_m2: NotNegative = Field(description="how bright it is")
 
 
 class Ambient(Radiator):
@@ -40,14 +43,14 @@ class Ambient(Radiator):
 class _Light(Radiator):
     """A light, its strength given as the luminance of a perfect reflector that faces it."""
 
-    name: Name | None = None
+    name: Name | None = Field(default=None, description="for people")
 
 
 class PointLight(_Light):
     """A light at one point."""
 
     kind: Literal["point"]
-    position_mm: Point
+    position_mm: Point = Field(description="where the light is")
 
 
 class DirectionalLight(_Light):
@@ -61,8 +64,8 @@ class SphereLight(_Light):
     """A small luminous sphere."""
 
     kind: Literal["sphere"]
-    centre_mm: Point
-    radius_mm: Length
+    centre_mm: Point = Field(description="its middle")
+    radius_mm: Length = Field(description="its radius: the larger, the softer the shadows")
 
 
 Light: TypeAlias = Annotated[
@@ -73,11 +76,11 @@ Light: TypeAlias = Annotated[
 class SoftBox(Radiator):
     """A luminous rectangle that is seen in the background only."""
 
-    centre_mm: Point
+    centre_mm: Point = Field(description="its middle")
     facing_mm: Point = Field(default=(0.0, 0.0, 0.0), description="the point that it faces")
-    up: Direction = (0.0, 1.0, 0.0)
-    width_mm: Length
-    height_mm: Length
+    up: Direction = Field(default=(0.0, 1.0, 0.0), description="its height runs this way")
+    width_mm: Length = Field(description="across up")
+    height_mm: Length = Field(description="along up")
     edge_softness: Share = Field(
         default=0.0, description="0: a hard edge; 1: it falls off from the middle"
     )
@@ -106,19 +109,21 @@ class GradientBackground(Table):
     """Light that changes from the zenith (+y) to the nadir."""
 
     kind: Literal["gradient"]
-    zenith: Radiator
-    nadir: Radiator
+    zenith: Radiator = Field(description="straight above")
+    nadir: Radiator = Field(description="straight below")
 
 
 class StudioBackground(Table):
     """A constant or a gradient, and soft boxes before it."""
 
     kind: Literal["studio"]
-    source: SourceSpec | None = None
-    luminance_cd_m2: NotNegative | None = None
-    zenith: Radiator | None = None
-    nadir: Radiator | None = None
-    soft_boxes: Annotated[tuple[SoftBox, ...], Field(strict=False, max_length=64)] = ()
+    source: SourceSpec | None = Field(default=None, description="of a constant")
+    luminance_cd_m2: NotNegative | None = Field(default=None, description="of a constant")
+    zenith: Radiator | None = Field(default=None, description="of a gradient: straight above")
+    nadir: Radiator | None = Field(default=None, description="of a gradient: straight below")
+    soft_boxes: Annotated[tuple[SoftBox, ...], Field(strict=False, max_length=64)] = Field(
+        default=(), description="the nearer one hides the farther one"
+    )
 
     @model_validator(mode="after")
     def _has_one_base(self) -> StudioBackground:

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 class LibraryMaterial(Table):
     """A material of the library, with shading terms of the scene's own if it likes."""
 
-    library: Name
-    hall: HallTerms | None = None
+    library: Name = Field(description="a name of the library; `lamplit materials` lists them")
+    hall: HallTerms | None = Field(default=None, description="terms of the Hall method")
 
 
 def _material_form(value: object) -> str:
@@ -49,18 +49,30 @@ class Scene(Table):
     """
 
     lamplit: Literal[1] = Field(description="version of this format")
-    name: Annotated[str, Field(max_length=200)] = ""
-    description: str = ""
-    camera: Camera
-    image: ImageSettings = ImageSettings()
-    display: DisplaySettings = DisplaySettings()
-    hall: HallSettings = HallSettings()
-    ambient: Ambient | None = None
-    background: Background = BLACK
-    lights: Annotated[tuple[Light, ...], Field(strict=False, max_length=1000)] = ()
-    sources: dict[Name, SourceSpec] = Field(default_factory=dict[str, Any])
-    materials: dict[Name, SceneMaterial] = Field(default_factory=dict[str, Any])
-    objects: Annotated[tuple[Object, ...], Field(strict=False, max_length=10_000)] = ()
+    name: Annotated[str, Field(max_length=200)] = Field(
+        default="", description="title of the picture"
+    )
+    description: str = Field(default="", description="for people")
+    camera: Camera = Field(description="from where the scene is seen")
+    image: ImageSettings = Field(default=ImageSettings(), description="size and sampling")
+    display: DisplaySettings = Field(
+        default=DisplaySettings(), description="from tristimulus values to a picture"
+    )
+    hall: HallSettings = Field(default=HallSettings(), description="how far rays are followed")
+    ambient: Ambient | None = Field(default=None, description="light from all around")
+    background: Background = Field(default=BLACK, description="what rays meet that leave the scene")
+    lights: Annotated[tuple[Light, ...], Field(strict=False, max_length=1000)] = Field(
+        default=(), description="what makes highlights and shadows"
+    )
+    sources: dict[Name, SourceSpec] = Field(
+        default_factory=dict[str, Any], description="spectra of light by name"
+    )
+    materials: dict[Name, SceneMaterial] = Field(
+        default_factory=dict[str, Any], description="materials by name"
+    )
+    objects: Annotated[tuple[Object, ...], Field(strict=False, max_length=10_000)] = Field(
+        default=(), description="all bodies and surfaces; one at least"
+    )
 
     _root: Path = PrivateAttr(default=Path())
     _path: Path | None = PrivateAttr(default=None)

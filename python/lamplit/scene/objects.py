@@ -21,9 +21,13 @@ Angles: TypeAlias = Annotated[tuple[Number, Number, Number], Field(strict=False)
 class Transform(Table):
     """First the scale, then rotations about x, y and z, then the shift."""
 
-    scale: Annotated[Positive, Field(ge=1e-9, le=1e9)] = 1.0
-    rotate_deg: Angles = (0.0, 0.0, 0.0)
-    translate_mm: Point = (0.0, 0.0, 0.0)
+    scale: Annotated[Positive, Field(ge=1e-9, le=1e9)] = Field(
+        default=1.0, description="factor on all lengths, from the origin"
+    )
+    rotate_deg: Angles = Field(
+        default=(0.0, 0.0, 0.0), description="about x, then y, then z; about z, 90 takes x to y"
+    )
+    translate_mm: Point = Field(default=(0.0, 0.0, 0.0), description="the shift at last")
 
     def matrix(self) -> NDArray[np.float64]:
         """Return the 4×4 matrix that acts on column vectors (x, y, z, 1) in mm.
@@ -53,27 +57,29 @@ def _exact_turn(degrees: float) -> tuple[float, float]:
 
 
 class _Object(Table):
-    name: Name
+    name: Name = Field(description="a name of its own, for messages")
     material: Name = Field(description="a name of [materials], or of the library")
     priority: int = Field(
         default=0, ge=-1000, le=1000, description="where bodies share space, the higher one wins"
     )
-    transform: Transform = Transform()
+    transform: Transform = Field(default=Transform(), description="moves it into the scene")
 
 
 class Sphere(_Object):
     """A sphere."""
 
     kind: Literal["sphere"]
-    centre_mm: Point
-    radius_mm: Length
+    centre_mm: Point = Field(description="its middle")
+    radius_mm: Length = Field(description="its radius")
 
 
 class Tetrahedron(_Object):
     """The solid between four points: a triangular pyramid."""
 
     kind: Literal["tetrahedron"]
-    points_mm: Annotated[tuple[Point, Point, Point, Point], Field(strict=False)]
+    points_mm: Annotated[tuple[Point, Point, Point, Point], Field(strict=False)] = Field(
+        description="its four corners, in any order"
+    )
 
     @model_validator(mode="after")
     def _is_solid(self) -> Tetrahedron:
@@ -90,25 +96,25 @@ class Plane(_Object):
     """A plane without end."""
 
     kind: Literal["plane"]
-    point_mm: Point
-    normal: Direction
+    point_mm: Point = Field(description="any point on it")
+    normal: Direction = Field(description="stands on it; its length is not used")
 
 
 class Disc(_Object):
     """A flat round disc without thickness."""
 
     kind: Literal["disc"]
-    centre_mm: Point
-    normal: Direction
-    radius_mm: Length
+    centre_mm: Point = Field(description="its middle")
+    normal: Direction = Field(description="stands on it; its length is not used")
+    radius_mm: Length = Field(description="its radius")
 
 
 class Box(_Object):
     """A box along the axes, before its transform."""
 
     kind: Literal["box"]
-    min_mm: Point
-    max_mm: Point
+    min_mm: Point = Field(description="the corner with the lowest x, y and z")
+    max_mm: Point = Field(description="the corner with the highest x, y and z")
 
     @model_validator(mode="after")
     def _is_solid(self) -> Box:
@@ -122,8 +128,8 @@ class Box(_Object):
 class _Upright(_Object):
     base_mm: Point = Field(description="the centre of the base")
     axis: Direction = Field(description="from the base to the other end; its length is not used")
-    radius_mm: Length
-    height_mm: Length
+    radius_mm: Length = Field(description="radius of the base")
+    height_mm: Length = Field(description="along the axis")
 
 
 class Cylinder(_Upright):
@@ -142,7 +148,7 @@ class MeshObject(_Object):
     """Triangles from a PLY, STL, OBJ, glTF or GLB file."""
 
     kind: Literal["mesh"]
-    file: FileName
+    file: FileName = Field(description="mesh file below the scene's folder")
     unit: Literal["mm", "cm", "m", "in"] = Field(description="what a length of 1 in the file means")
     scale: Annotated[Positive, Field(ge=1e-9, le=1e9)] = Field(
         default=1.0, description="factor on the coordinates of the file, besides the unit"

@@ -8,12 +8,15 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 from lamplit.scene.contact import Contact, find_contacts
+from lamplit.scene.faults import key_path
 from lamplit.scene.memory import MemoryEstimate, memory_estimate
 from lamplit.scene.models import Scene
+from lamplit.scene.references import values_of
 from lamplit.scene.resolve import ResolvedObject, solid_faults
 from lamplit.scene.solids import Body, bodies
 from lamplit.scene.spectra import spectral_faults
 from lamplit.scene.view import view_fault
+from lamplit.spectra_spec import NamedSource
 
 Level: TypeAlias = Literal["error", "warning", "notice"]
 
@@ -51,6 +54,7 @@ def check_scene(scene: Scene) -> Report:
         *_errors(scene),
         *(finding for body in everything for finding in _mesh_findings(body)),
         *_contacts(everything),
+        *_unused(scene),
     ]
     order = ("error", "warning", "notice")
     found.sort(key=lambda finding: order.index(finding.level))
@@ -91,6 +95,21 @@ def _contacts(everything: tuple[Body, ...]) -> Iterator[Finding]:
         yield Finding(
             "warning", "objects", f"{skipped} more pairs of near objects were not looked at"
         )
+
+
+def _unused(scene: Scene) -> Iterator[Finding]:
+    used = {
+        "materials": {thing.material for thing in scene.objects},
+        "sources": {
+            source.root
+            for keys, source in values_of(scene, NamedSource)
+            if keys[0] != "sources"  # these name the library
+        },
+    }
+    for table, entries in (("materials", scene.materials), ("sources", scene.sources)):
+        for name in entries:
+            if name not in used[table]:
+                yield Finding("notice", key_path((table, name)), f"nothing uses {name!r}")
 
 
 def _told(contact: Contact, first: ResolvedObject, second: ResolvedObject) -> Finding:

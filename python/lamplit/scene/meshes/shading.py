@@ -10,18 +10,18 @@ from lamplit.scene.meshes.topology import Edges
 
 
 def normals_and_angles(vertices: Floats, triangles: Indices) -> tuple[Floats, Floats]:
-    """Return the unit normals (m, 3) of triangles (m, 3) and the angles in radians at their corners.
+    """Return the unit normals of triangles (m, 3), and the angle in radians at each corner (m, 3).
 
-    A triangle without area has a normal of zero. At each corner two sides span the same area, so
-    that tan of the angle is twice the area over the sides' inner product.
+    A triangle without area has a normal of zero. Two sides span the same area at each corner, so
+    that the tangent of its angle is twice the area over the inner product of its sides.
     """
     one, two, three = (vertices[triangles[:, corner]] for corner in range(3))
     sides = (two - one, three - two, one - three)
     normals = np.cross(sides[0], -sides[2])
-    doubled = np.sqrt(dot(normals, normals))
+    doubled = np.sqrt(dot(normals, normals))[:, None]
     inner = [-dot(sides[corner], sides[corner - 1]) for corner in range(3)]
-    angles = np.arctan2(doubled[:, None], np.stack(inner, axis=1))
-    return np.divide(normals, doubled[:, None], where=doubled[:, None] > 0, out=0 * normals), angles
+    angles = np.arctan2(doubled, np.stack(inner, axis=1))
+    return normals / np.where(doubled > 0, doubled, 1.0), angles
 
 
 def smooth(

@@ -55,7 +55,7 @@ def find_edges(triangles: Indices) -> Edges:
     low, high = np.minimum(starts, ends), np.maximum(starts, ends)
     order, ordered = _sorted(low * (int(triangles.max()) + 1) + high)
     heads = np.flatnonzero(np.concatenate([[True], ordered[1:] != ordered[:-1]]))
-    counts = np.diff(np.append(heads, len(keys)))
+    counts = np.diff(np.append(heads, len(order)))
     odd = order[heads[counts % 2 == 1]]
     twos = heads[counts == 2]
     slots = np.stack([order[twos], order[twos + 1]], axis=1)
@@ -108,8 +108,10 @@ def orient(vertices: Floats, triangles: Indices, edges: Edges) -> Orientation:
         rim = np.zeros(len(vertices), dtype=bool)
         rim[edges.open_edges] = True
         is_open[shell[rim[triangles].any(axis=1)]] = True
-    corners = vertices[triangles] - vertices.mean(axis=0)
-    volumes = dot(corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6.0
+    middle: Floats = vertices.mean(axis=0)
+    centred = vertices - middle
+    one, two, three = (centred[triangles[:, corner]] for corner in range(3))
+    volumes = dot(one, np.cross(two, three)) / 6.0
     signed = np.bincount(shell, np.where(turn, -volumes, volumes), minlength=shells)
     turned = np.bincount(shell, turn, minlength=shells)
     sizes = np.bincount(shell, minlength=shells)
