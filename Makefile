@@ -14,30 +14,38 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 help: ## say what each target does
 	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 10
 
-# Python and its libraries, at the versions of the lock file.
-$(VENV)/.ready: requirements/dev.lock
+# Python and the libraries that Lamplit runs with, at the versions of the lock files.
+$(VENV)/.ready: requirements/run.lock
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10))' \
 	  || { echo "Lamplit needs Python 3.10 or later: make PYTHON=python3.12 ..."; exit 1; }
 	@command -v cargo >/dev/null || { echo "Lamplit needs a Rust toolchain (https://rustup.rs)"; exit 1; }
-	@echo "Installing the Python libraries into $(VENV): once, a minute or two ..."
+	@echo "Installing the Python libraries into $(VENV): once, about a minute ..."
 	@$(PYTHON) -m venv --clear $(VENV)
+	@$(BIN)/python -m pip install --quiet --no-deps -r requirements/run.lock \
+	  "$$(grep '^maturin==' requirements/dev.lock)"
+	@touch $@
+
+# What tests, checks and benches need besides.
+$(VENV)/.tools: $(VENV)/.ready requirements/dev.lock
+	@echo "Installing the tools for tests and checks into $(VENV): once, about a minute ..."
 	@$(BIN)/python -m pip install --quiet --no-deps -r requirements/dev.lock
 	@touch $@
 
 # The compiled core and the package, installed in place.
 $(CORE): $(VENV)/.ready $(RUST) pyproject.toml
-	@echo "Compiling the core: half a minute ..."
-	@PIP_QUIET=1 VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --locked --quiet >/dev/null
+	@echo "Compiling the core: about half a minute ..."
+	@VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --locked >$(VENV)/build.log 2>&1 \
+	  || { cat $(VENV)/build.log; exit 1; }
 	@touch $@
 
 demo: $(CORE) ## render and measure the example rear lamp; says which files to open
 	@$(BIN)/python examples/demo.py
 
-test: $(CORE) ## run every test: Rust, Python, doctests, the wheel
+test: $(CORE) $(VENV)/.tools ## run every test: Rust, Python, doctests, the wheel
 	cargo test --workspace --locked --quiet
 	$(BIN)/python -m pytest
 
-check: $(CORE) ## format, lints, types, stubs: all must be clean
+check: $(CORE) $(VENV)/.tools ## format, lints, types, stubs: all must be clean
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets --locked --quiet -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked --quiet
@@ -46,15 +54,15 @@ check: $(CORE) ## format, lints, types, stubs: all must be clean
 	$(BIN)/basedpyright
 	$(BIN)/python -m mypy.stubtest lamplit._core --ignore-disjoint-bases
 
-format: $(VENV)/.ready ## put the code into its format
+format: $(VENV)/.tools ## put the code into its format
 	cargo fmt --all
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
 
-bench: $(CORE) ## measure speed against peers; writes benchmarks/results/
+bench: $(CORE) $(VENV)/.tools ## measure speed against peers; writes benchmarks/results/
 	$(BIN)/python benchmarks/run.py
 
-docs: $(CORE) ## make the pictures, tables and API pages of docs/ again
+docs: $(CORE) $(VENV)/.tools ## make the pictures, tables and API pages of docs/ again
 	$(BIN)/python docs/make.py
 
 wheel: $(VENV)/.ready ## one self-contained abi3 wheel in dist/

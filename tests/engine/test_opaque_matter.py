@@ -63,7 +63,7 @@ def test_gloss_takes_its_share_and_leaves_the_rest_to_the_base(lane_scene: Maker
     scene.look((90 * np.sin(angle), 0, 90 * np.cos(angle)), (0, 0, 0))
     f = fresnel(angle, 1.0, n)
     highlight = 0.9 * 7.0 * (f * 0.8**5 + (1 - f) * base * 0.8)
-    expected = highlight + 0.7 * 0.5 * base + 0.9 * f * 2.0
+    expected = highlight + 0.7 * 0.5 * (1 - f) * base + 0.9 * f * 2.0
     np.testing.assert_allclose(scene.radiance(), expected, rtol=1e-9)
 
 

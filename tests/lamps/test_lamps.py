@@ -167,6 +167,37 @@ def test_the_paper_scene_needs_no_meshes(tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["scene.toml"]
 
 
+def test_the_checker_floor_of_the_paper_scene_shows_no_moire(tmp_path: Path) -> None:
+    """Sobol points turn moiré into fine noise, and even the farthest squares span pixels."""
+    scene = tomllib.loads(write_lamp("paper", tmp_path).read_text())
+    assert scene["image"]["sampling"] == "sobol"
+    camera, floor = scene["camera"], scene["materials"]["floor"]
+    view = np.subtract(camera["target_mm"], camera["position_mm"])
+    down = np.arctan2(-view[1], np.hypot(view[0], view[2]))
+    topmost = down - np.radians(camera["field_of_view_deg"] / 2.0)
+    assert topmost > 0.0
+    farthest_mm = camera["position_mm"][1] / np.sin(topmost)
+    square_rad = floor["square_mm"] * np.sin(topmost) / farthest_mm
+    pixel_rad = np.radians(camera["field_of_view_deg"]) / scene["image"]["height"]
+    assert square_rad > 3.0 * pixel_rad
+
+
+@pytest.mark.parametrize(("cover", "source"), [("smoke", "pc-amber-led"), ("red", "red-led-624")])
+def test_the_dies_have_the_colour_that_they_shine_in(
+    cover: str, source: str, tmp_path: Path
+) -> None:
+    settings = {"triangles": 4_000, "lit": True, "cover_colour": cover}
+    scene = tomllib.loads(write_lamp("led-array", tmp_path, settings).read_text())
+    dies = [light for light in scene["lights"] if light["kind"] == "sphere"]
+    assert len(dies) == 12
+    assert {light["source"] for light in dies} == {source}
+    die = scene["materials"]["die"]["reflectance"]
+    blue, yellow = (die["values"][die["wavelengths_nm"].index(nm)] for nm in (480, 580))
+    assert (yellow > 5.0 * blue) == (source == "pc-amber-led")
+    mask = {thing["name"]: thing["material"] for thing in scene["objects"]}["tray"]
+    assert mask == "black-abs"
+
+
 @pytest.mark.parametrize("name", lamp_names())
 def test_every_parameter_has_a_default_and_a_meaning(name: str) -> None:
     for parameter in lamp_parameters(name):

@@ -26,11 +26,6 @@ kind = "point"
 source = "D65"
 luminance_cd_m2 = 1000.0
 position_mm = [0.0, 300.0, 300.0]
-[[lights]]
-kind = "directional"
-source = "my-led"
-luminance_cd_m2 = 20.0
-direction = [0.0, -1.0, 0.0]
 [sources.my-led]
 led_peak_nm = 624
 led_fwhm_nm = 18

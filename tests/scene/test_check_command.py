@@ -15,7 +15,8 @@ from lamplit.errors import LamplitError
 def test_a_sound_scene_is_called_sound(sound: Path, capsys: pytest.CaptureFixture[str]) -> None:
     check(sound)
     printed = capsys.readouterr().out
-    assert "sound (0 errors, 0 warnings, 0 notices)" in printed
+    assert "sound (0 errors, 0 warnings, 1 notice)" in printed
+    assert "nothing uses 'my-led'" in " ".join(printed.split())
     assert "ball" in printed
     assert "MiB" in printed
 

@@ -174,7 +174,9 @@ def _tables(p: Parameters, layout: _Layout) -> list[Table]:
         *studio.picture(white_luminance_cd_m2=600.0),
         studio.hall(3e-3),
         *studio.surroundings(190.0, 30.0, 120.0),
-        studio.soft_box(4000.0, (-230.0, -12.0, 1000.0), (520.0, 34.0), edge_softness=0.5),
+        studio.soft_box(
+            2600.0, (-265.0, 22.0, 1000.0), (420.0, 90.0), edge_softness=0.2, up=(0.12, 1.0, 0.0)
+        ),
         studio.soft_box(9000.0, (100.0, 1000.0, 600.0), (1100.0, 300.0)),
         studio.soft_box(6000.0, (-900.0, 100.0, 450.0), (160.0, 900.0)),
         studio.point_light("key", "D65", 4000.0, (-300.0, 700.0, 1200.0)),

@@ -6,7 +6,7 @@ mod primitive;
 mod surface_point;
 mod triangles;
 
-pub use bvh::Kernel;
+pub use bvh::{overlap, Kernel, PARALLEL};
 pub use primitive::{
     Cone, ConvexPolyhedron, Cylinder, Disc, Plane, Primitive, PrimitiveError, Shape, Sphere,
 };

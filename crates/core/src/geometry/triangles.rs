@@ -125,6 +125,39 @@ impl Triangles {
         self.tree.as_ref().is_some_and(|tree| tree.any(ray))
     }
 
+    /// Adds every triangle that the ray meets at 0 < t < `t_max` to `found`, in no particular order.
+    pub fn all_hits(&self, ray: &Ray, found: &mut Vec<TriangleHit>) {
+        if let Some(tree) = &self.tree {
+            tree.all(ray, found);
+        }
+    }
+
+    /// The farthest apart, in mm, that single precision takes two descriptions of one surface, such
+    /// as the touching faces of two bodies: 50 nm where the meshes extend over 200 mm.
+    pub fn rounding(&self) -> f64 {
+        self.tree.as_ref().map_or(0.0, Tree::rounding)
+    }
+
+    /// The triangles of which another body's triangle, by `bodies`, seems to lie within `reach` mm in
+    /// the same plane. `is_candidate` sorts out, by body and box, those that cannot have one.
+    pub fn touching(
+        &self,
+        bodies: &[u32],
+        reach: f64,
+        is_candidate: impl Fn(u32, [DVec3; 2]) -> bool + Sync,
+    ) -> Vec<u32> {
+        self.tree.as_ref().map_or_else(Vec::new, |tree| tree.touching(bodies, reach, is_candidate))
+    }
+
+    /// The triangles whose box is `wanted`; whatever is wanted of a box is wanted of all larger ones.
+    pub fn in_boxes(&self, wanted: impl Fn([DVec3; 2]) -> bool) -> Vec<u32> {
+        let mut found = Vec::new();
+        if let Some(tree) = &self.tree {
+            tree.select(&wanted, &mut |triangle, _| found.push(triangle));
+        }
+        found
+    }
+
     /// Number of triangles.
     pub fn len(&self) -> usize {
         self.len

@@ -61,6 +61,9 @@ pub enum RenderError {
     /// The camera stands inside an opaque body.
     #[error("the camera is inside the opaque body {0:?}")]
     CameraInside(String),
+    /// Rays are to be followed deeper than the stack of a thread allows.
+    #[error("max_depth is at most {DEEPEST}, not {0}")]
+    TooDeep(u32),
     /// The threads cannot be started.
     #[error("the threads cannot be started: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
@@ -69,6 +72,12 @@ pub enum RenderError {
 /// The most samples that a pixel takes before the next pixel has its turn.
 const LONGEST_PASS: u32 = 64;
 
+/// The most reflections and refractions that are followed.
+pub const DEEPEST: u32 = 256;
+
+/// The stack of a thread, in bytes. One level of a walk takes about 4 KiB.
+const STACK: usize = 16 * 1024 * DEEPEST as usize;
+
 /// Render `settings.samples` of every pixel of `scene`.
 ///
 /// The samples of a pixel are summed in their order by whichever thread holds it, so the film
@@ -76,16 +85,20 @@ const LONGEST_PASS: u32 = 64;
 /// what it has.
 ///
 /// # Errors
-/// The camera is inside an opaque body, or no threads can be had.
+/// The camera is inside an opaque body, `max_depth` exceeds [`DEEPEST`], or no threads can be had.
 pub fn render(
     scene: &Scene,
     settings: &RenderSettings,
     progress: &Progress,
 ) -> Result<(Film, Tally), RenderError> {
+    if settings.hall.max_depth > DEEPEST {
+        return Err(RenderError::TooDeep(settings.hall.max_depth));
+    }
     let interior = scene
         .bodies_round(scene.camera.position())
         .map_err(|body| RenderError::CameraInside(scene.bodies[body as usize].name.clone()))?;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.threads).build()?;
+    let threads = rayon::ThreadPoolBuilder::new().num_threads(settings.threads);
+    let pool = threads.stack_size(STACK).build()?;
     let mut film = Film::new(settings.width, settings.height, settings.bands_per_lane);
     let total = Mutex::new(Tally::new(scene.bodies.len()));
     for samples in passes(settings.samples.clone()) {

@@ -18,7 +18,7 @@ use std::ops::Range;
 use crate::math::{DVec2, DVec3, Ray};
 use crate::matter::{dielectric_reflectance, reflect, refract, Dielectric, HallTerms, Material};
 use crate::sampling::PixelSampler;
-use crate::scene::{Interior, LostRay, Scene, SurfaceHit};
+use crate::scene::{Face, Interior, LostRay, Scene, SurfaceHit};
 use crate::spectrum::{SampledSpectrum, SampledWavelengths, LANES};
 
 use super::shadow::transmittance_towards;
@@ -92,9 +92,10 @@ impl<'a> HallWalk<'a> {
     fn follow(&mut self, mut branch: Branch) {
         loop {
             self.tally.eye_rays += 1;
-            let Some(hit) = self.scene.closest_hit(&branch.ray) else {
+            let Some(place) = self.scene.first_place(&branch.ray) else {
                 return self.reach_background(&branch);
             };
+            let hit = place.hit;
             let medium = self.scene.medium(&branch.interior);
             if let Some(body) = medium {
                 let absorption = body.absorption.at(self.wavelengths);
@@ -105,17 +106,17 @@ impl<'a> HallWalk<'a> {
             if material.dielectric().is_none() {
                 return self.shade_opaque(&branch, &meeting, material);
             }
-            match branch.interior.cross(hit.body, meeting.is_entering()) {
-                Ok(beyond) if self.is_interface(&branch.interior, &beyond) => {
-                    return self.shade_interface(&branch, &meeting, &material.hall, beyond);
-                }
-                Ok(beyond) => branch.interior = beyond,
-                Err(cause) => {
-                    self.tally.lose(hit.body, cause);
-                    if self.was_followed_too_far(&mut branch) {
-                        return;
-                    }
-                }
+            let mut is_lost = false;
+            let beyond = branch.interior.through(place.faces(), |body, cause| {
+                self.tally.lose(body, cause);
+                is_lost = true;
+            });
+            if let Some(face) = self.scene.interface(&branch.interior, &beyond) {
+                return self.shade_interface(&branch, &meeting, face, beyond);
+            }
+            branch.interior = beyond;
+            if is_lost && self.was_followed_too_far(&mut branch) {
+                return;
             }
             branch.ray.origin = hit.point.leave_along(branch.ray.direction);
         }
@@ -127,14 +128,6 @@ impl<'a> HallWalk<'a> {
         let too_far = branch.depth > self.settings.max_depth;
         self.tally.cut_by_depth += u64::from(too_far);
         too_far
-    }
-
-    /// Whether the matter changes from one list of bodies to another.
-    fn is_interface(&self, here: &Interior, beyond: &Interior) -> bool {
-        let material = |interior: &Interior| {
-            interior.filling(&self.scene.bodies).map(|id| self.scene.bodies[id as usize].material)
-        };
-        material(here) != material(beyond)
     }
 
     fn reach_background(&mut self, branch: &Branch) {
@@ -150,9 +143,10 @@ impl<'a> HallWalk<'a> {
         &mut self,
         branch: &Branch,
         meeting: &Meeting,
-        terms: &HallTerms,
+        face: Face,
         beyond: Interior,
     ) {
+        let terms = &self.scene.material_of(face.body).hall;
         let here = self.scene.medium(&branch.interior);
         let there = self.scene.medium(&beyond);
         let eta = self.index(there) / self.index(here);
@@ -178,7 +172,7 @@ impl<'a> HallWalk<'a> {
             refracted.push((meeting.on_far_side(wo), lanes));
         }
         self.add_highlights(branch, meeting, terms, f_sr, branch.interior, 1.0);
-        if !meeting.is_entering() {
+        if !face.is_entered {
             self.add_highlights(branch, meeting, terms, f_st, beyond, -1.0);
         }
         self.add_ambient(branch, terms, None);
@@ -339,10 +333,6 @@ impl Meeting {
     /// 1 where the branch comes from the side that the surface's own normal points to, else −1.
     fn side(&self) -> f64 {
         1.0_f64.copysign(self.hit.point.normal.dot(self.wi))
-    }
-
-    fn is_entering(&self) -> bool {
-        self.side() > 0.0
     }
 
     /// Keep a mirrored direction on the branch's side of the true surface.

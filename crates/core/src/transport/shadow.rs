@@ -33,37 +33,30 @@ pub(super) fn transmittance_towards(
     };
     for _ in 0..MOST_SURFACES {
         tally.shadow_rays += 1;
-        let hit = scene.closest_hit(&ray);
-        let length = hit.map_or(ray.t_max, |hit| hit.point.t);
+        let place = scene.first_place(&ray);
+        let length = place.as_ref().map_or(ray.t_max, |place| place.hit.point.t);
         let medium = scene.medium(&interior);
         if let Some(body) = medium {
             share *= body.absorption.at(wavelengths).transmittance(length);
         }
-        let Some(hit) = hit else {
+        let Some(place) = place else {
             return share;
         };
-        let material = scene.material_of(hit.body);
-        if material.dielectric().is_none() {
+        let hit = place.hit;
+        if scene.material_of(hit.body).dielectric().is_none() {
             return SampledSpectrum::ZERO;
         }
-        let cosine = hit.point.normal.dot(ray.direction);
-        match interior.cross(hit.body, cosine < 0.0) {
-            Ok(beyond) => {
-                let f_st = material.hall.specular_transmittance.as_ref();
-                share *= f_st.map_or_else(
-                    || {
-                        outer_transmittance(
-                            wavelengths,
-                            cosine.abs(),
-                            [medium, scene.medium(&beyond)],
-                        )
-                    },
-                    |table| table.at(wavelengths),
-                );
-                interior = beyond;
-            }
-            Err(cause) => tally.lose(hit.body, cause),
+        let beyond = interior.through(place.faces(), |body, cause| tally.lose(body, cause));
+        if let Some(face) = scene.interface(&interior, &beyond) {
+            let cosine = hit.point.normal.dot(ray.direction).abs();
+            let media = [medium, scene.medium(&beyond)];
+            let own = scene.material_of(face.body).hall.specular_transmittance.as_ref();
+            share *= own.map_or_else(
+                || outer_transmittance(wavelengths, cosine, media),
+                |table| table.at(wavelengths),
+            );
         }
+        interior = beyond;
         ray.origin = hit.point.leave_along(ray.direction);
         ray.t_max -= length;
         if share.max() <= 0.0 || ray.t_max <= 0.0 {

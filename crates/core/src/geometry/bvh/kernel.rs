@@ -87,8 +87,20 @@ impl Kernel {
             Self::Avx2 => unsafe { super::x86::any_avx2(tree, ray) },
             #[cfg(target_arch = "x86_64")]
             Self::Avx512 => unsafe { super::x86::any_avx512(tree, ray) },
-            _ => traverse::any::<Portable>(tree, ray),
+            _ => traverse::any::<Portable, false>(tree, ray, &mut Vec::new()),
         }
+    }
+
+    /// Adds every crossing to `found`. The kernel must be one that [`Tree`] has accepted.
+    pub(super) fn all(self, tree: &Tree, ray: &Ray, found: &mut Vec<TriangleHit>) {
+        match self {
+            // SAFETY: as in `closest`.
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => unsafe { super::x86::all_avx2(tree, ray, found) },
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => unsafe { super::x86::all_avx512(tree, ray, found) },
+            _ => traverse::any::<Portable, true>(tree, ray, found),
+        };
     }
 }
 

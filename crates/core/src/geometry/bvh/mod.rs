@@ -29,8 +29,10 @@ mod lanes;
 mod layout;
 mod probe;
 mod split;
+mod spread;
 #[cfg(test)]
 mod tests;
+mod touch;
 mod traverse;
 #[cfg(target_arch = "x86_64")]
 mod x86;
@@ -38,6 +40,7 @@ mod x86;
 pub use hit::TriangleHit;
 pub use kernel::Kernel;
 use probe::{Frame, Probe};
+pub use touch::{overlap, PARALLEL};
 
 /// Triangles per block, children per node: the lanes of one 256-bit register of `f32`.
 pub(super) const WIDTH: usize = 8;
@@ -161,6 +164,11 @@ impl Tree {
     #[inline(always)]
     pub fn any(&self, ray: &Ray) -> bool {
         self.kernel.any(self, ray)
+    }
+
+    /// Adds every triangle that the ray crosses to `found`, in no particular order.
+    pub fn all(&self, ray: &Ray, found: &mut Vec<TriangleHit>) {
+        self.kernel.all(self, ray, found);
     }
 
     /// The lower and the upper corner of the box around all triangles.

@@ -8,7 +8,8 @@ use glam::DVec3;
 use crate::math::Ray;
 
 use super::lanes::Lanes;
-use super::{exact, Block, Link, Node, Probe, Tree, TriangleHit, MAX_DEPTH, WIDTH};
+use super::spread::Spread;
+use super::{exact, Link, Probe, Tree, TriangleHit, MAX_DEPTH, WIDTH};
 
 /// The nearest triangle so far that the ray crosses.
 struct Crossing {
@@ -51,110 +52,6 @@ struct Pending {
 /// Left uninitialised, because to clear it for each ray would cost as much as to visit some ten
 /// nodes.
 type Stack = [MaybeUninit<Pending>; (WIDTH - 1) * MAX_DEPTH + 1];
-
-/// The single-precision part of a probe, spread over lanes.
-///
-/// Whatever computes with lanes is a function marked `inline(always)`, never a closure: what is not
-/// inlined into the entry points is compiled without their instruction set, and halved the speed.
-struct Spread<L> {
-    near_sides: [usize; 3],
-    inverse_direction: [L; 3],
-    near_offset: [L; 3],
-    far_offset: [L; 3],
-    /// In the order of `axes`.
-    origin: [L; 3],
-    axes: [usize; 3],
-    shear: [L; 2],
-    edge_slope: L,
-    edge_constant: L,
-}
-
-#[inline(always)]
-fn splat3<L: Lanes>(values: [f32; 3]) -> [L; 3] {
-    [L::splat(values[0]), L::splat(values[1]), L::splat(values[2])]
-}
-
-/// x₁y₂ − y₁x₂
-#[inline(always)]
-fn edge<L: Lanes>(first: (L, L), second: (L, L)) -> L {
-    first.0.mul_sub(second.1, first.1.mul(second.0))
-}
-
-#[inline(always)]
-fn largest<L: Lanes>(a: L, b: L, c: L) -> L {
-    a.abs().max(b.abs()).max(c.abs())
-}
-
-impl<L: Lanes> Spread<L> {
-    #[inline(always)]
-    fn new(probe: &Probe) -> Self {
-        let single = &probe.single;
-        let negative = single.inverse_direction.map(|d| usize::from(d < 0.0));
-        Self {
-            near_sides: [negative[0], 2 + negative[1], 4 + negative[2]],
-            inverse_direction: splat3(single.inverse_direction),
-            near_offset: splat3(single.near_offset),
-            far_offset: splat3(single.far_offset),
-            origin: splat3(single.turned_origin),
-            axes: probe.axes,
-            shear: [L::splat(single.shear[0]), L::splat(single.shear[1])],
-            edge_slope: L::splat(single.edge_slope),
-            edge_constant: L::splat(single.edge_constant),
-        }
-    }
-
-    /// Bit k says that component k of the direction is negative.
-    #[inline(always)]
-    fn octant(&self) -> usize {
-        let [x, y, z] = self.near_sides;
-        x & 1 | (y & 1) << 1 | (z & 1) << 2
-    }
-
-    #[inline(always)]
-    fn near(&self, node: &Node, axis: usize) -> L {
-        let side = &node.bounds[self.near_sides[axis] % 6];
-        L::load(side).mul_add(self.inverse_direction[axis], self.near_offset[axis])
-    }
-
-    #[inline(always)]
-    fn far(&self, node: &Node, axis: usize) -> L {
-        let side = &node.bounds[(self.near_sides[axis] ^ 1) % 6];
-        L::load(side).mul_add(self.inverse_direction[axis], self.far_offset[axis])
-    }
-
-    /// Where the ray enters the children's boxes, and where it leaves them or ends.
-    #[inline(always)]
-    fn boxes(&self, node: &Node, limit: L) -> (L, L) {
-        let enter =
-            self.near(node, 0).max(self.near(node, 1)).max(self.near(node, 2).max(L::splat(0.0)));
-        let leave = self.far(node, 0).min(self.far(node, 1)).min(self.far(node, 2).min(limit));
-        (enter, leave)
-    }
-
-    /// The corner of eight triangles in the frame in which the ray is the z axis.
-    #[inline(always)]
-    fn shear(&self, corner: &[[f32; WIDTH]; 3]) -> (L, L) {
-        let [i, j, k] = self.axes;
-        let x = L::load(&corner[i % 3]).sub(self.origin[0]);
-        let y = L::load(&corner[j % 3]).sub(self.origin[1]);
-        let z = L::load(&corner[k % 3]).sub(self.origin[2]);
-        (self.shear[0].mul_add(z, x), self.shear[1].mul_add(z, y))
-    }
-
-    /// The lanes of the block whose triangle the ray's line may cross.
-    #[inline(always)]
-    fn candidates(&self, block: &Block) -> u32 {
-        let a = self.shear(&block.corners[0]);
-        let b = self.shear(&block.corners[1]);
-        let c = self.shear(&block.corners[2]);
-        let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
-        let coordinate = largest(a.0, b.0, c.0).max(largest(a.1, b.1, c.1));
-        let error = coordinate.mul_add(self.edge_slope, self.edge_constant);
-        let least = u.min(v).min(w);
-        let greatest = u.max(v).max(w);
-        L::splat(0.0).sub(error).at_most(least) | greatest.at_most(error)
-    }
-}
 
 /// The nearest crossing; of several at the same distance, the one with the lowest triangle.
 #[inline(always)]
@@ -219,9 +116,13 @@ pub(super) fn closest<L: Lanes>(tree: &Tree, ray: &Ray) -> Option<TriangleHit> {
 }
 
 /// Is there a crossing? The child with the fewest triangles is searched first, because it is the
-/// cheapest to search.
+/// cheapest to search. With `ALL` the search goes on, and every crossing is added to `found`.
 #[inline(always)]
-pub(super) fn any<L: Lanes>(tree: &Tree, ray: &Ray) -> bool {
+pub(super) fn any<L: Lanes, const ALL: bool>(
+    tree: &Tree,
+    ray: &Ray,
+    found: &mut Vec<TriangleHit>,
+) -> bool {
     let Some(probe) = &Probe::new(ray, &tree.frame) else {
         return false;
     };
@@ -233,7 +134,9 @@ pub(super) fn any<L: Lanes>(tree: &Tree, ray: &Ray) -> bool {
     let mut link = tree.root;
     loop {
         if link.is_leaf() {
-            if search_block(tree, link, probe, &lanes, &mut best) {
+            if ALL {
+                gather_block(tree, link, probe, &lanes, ray.direction, found);
+            } else if search_block(tree, link, probe, &lanes, &mut best) {
                 return true;
             }
         } else {
@@ -255,7 +158,7 @@ pub(super) fn any<L: Lanes>(tree: &Tree, ray: &Ray) -> bool {
             }
         }
         if height == 0 {
-            return false;
+            return ALL && !found.is_empty();
         }
         height -= 1;
         // SAFETY: all entries below the former `height` have been written.
@@ -294,4 +197,29 @@ fn search_block<L: Lanes>(
         }
     }
     found
+}
+
+/// Adds every crossing of the probe with a block to `found`.
+#[inline(always)]
+fn gather_block<L: Lanes>(
+    tree: &Tree,
+    link: Link,
+    probe: &Probe,
+    lanes: &Spread<L>,
+    direction: DVec3,
+    found: &mut Vec<TriangleHit>,
+) {
+    let block = &tree.blocks[link.block_index()];
+    let mut candidates = lanes.candidates(block) & link.lane_mask();
+    while candidates != 0 {
+        let lane = candidates.trailing_zeros() as usize % WIDTH;
+        candidates &= candidates - 1;
+        let crossed = exact::cross(probe, &block.corners(lane, probe.axes));
+        let Some(point) = crossed.filter(|point| probe.start + point.t < probe.t_max) else {
+            continue;
+        };
+        let (corners, place) = (block.corners(lane, [0, 1, 2]), probe.start + point.t);
+        let triangle = (place, block.triangles[lane]);
+        found.push(TriangleHit::new(triangle, direction, corners, point.weights, &tree.frame));
+    }
 }

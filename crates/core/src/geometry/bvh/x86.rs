@@ -129,7 +129,7 @@ lanes_of_256_bits!(
 );
 
 macro_rules! entry_points {
-    ($closest:ident, $any:ident, $lanes:ident, $features:literal) => {
+    ($closest:ident, $any:ident, $all:ident, $lanes:ident, $features:literal) => {
         /// The nearest crossing.
         ///
         /// # Safety
@@ -145,10 +145,25 @@ macro_rules! entry_points {
         /// The processor must have the features that are enabled here.
         #[target_feature(enable = $features)]
         pub(super) unsafe fn $any(tree: &Tree, ray: &Ray) -> bool {
-            traverse::any::<$lanes>(tree, ray)
+            traverse::any::<$lanes, false>(tree, ray, &mut Vec::new())
+        }
+
+        /// Adds every crossing to `found`.
+        ///
+        /// # Safety
+        /// The processor must have the features that are enabled here.
+        #[target_feature(enable = $features)]
+        pub(super) unsafe fn $all(tree: &Tree, ray: &Ray, found: &mut Vec<TriangleHit>) -> bool {
+            traverse::any::<$lanes, true>(tree, ray, found)
         }
     };
 }
 
-entry_points!(closest_avx2, any_avx2, Avx2, "avx2,fma,bmi1,lzcnt");
-entry_points!(closest_avx512, any_avx512, Avx512, "avx512f,avx512vl,avx2,fma,bmi1,lzcnt");
+entry_points!(closest_avx2, any_avx2, all_avx2, Avx2, "avx2,fma,bmi1,lzcnt");
+entry_points!(
+    closest_avx512,
+    any_avx512,
+    all_avx512,
+    Avx512,
+    "avx512f,avx512vl,avx2,fma,bmi1,lzcnt"
+);

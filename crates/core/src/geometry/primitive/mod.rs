@@ -13,6 +13,7 @@ mod sphere;
 
 use thiserror::Error;
 
+use super::bvh::overlap;
 use super::surface_point::SurfacePoint;
 use crate::math::{gamma, largest_component, DAffine3, DMat3, DVec3, Ray};
 
@@ -148,6 +149,23 @@ impl Primitive {
         let m = self.to_world.matrix3;
         let half = DVec3::new(m.row(0).length(), m.row(1).length(), m.row(2).length()) * radius;
         Some((middle - half, middle + half))
+    }
+
+    /// Whether its surface may come within `reach` mm of something in the box from `lo` to `hi`.
+    pub fn may_touch(&self, [lo, hi]: [DVec3; 2], reach: f64) -> bool {
+        let plane = match &self.shape {
+            Shape::Plane(plane) => Some(plane),
+            Shape::Disc(disc) => Some(&disc.plane),
+            _ => None,
+        };
+        let (centre, half) = ((lo + hi) / 2.0, (hi - lo) / 2.0);
+        let straddles = plane.is_none_or(|plane| {
+            let normal = (self.normal_to_world * plane.normal).normalize();
+            let height = normal.dot(centre - self.to_world.transform_point3(plane.point));
+            height.abs() <= normal.abs().dot(half) + reach
+        });
+        let grown = [lo - DVec3::splat(reach), hi + DVec3::splat(reach)];
+        straddles && self.bounds().is_none_or(|(from, to)| overlap([from, to], grown))
     }
 
     /// Whether the primitive encloses a volume.

@@ -8,7 +8,7 @@ use crate::math::DVec3;
 #[derive(Clone, Copy, Debug)]
 pub struct Plane {
     pub(super) point: DVec3,
-    normal: DVec3,
+    pub(super) normal: DVec3,
 }
 
 impl Plane {
@@ -32,7 +32,7 @@ impl Plane {
 /// A flat disc.
 #[derive(Clone, Copy, Debug)]
 pub struct Disc {
-    plane: Plane,
+    pub(super) plane: Plane,
     radius: f64,
 }
 

@@ -352,6 +352,47 @@ fn the_closest_hit_is_what_an_exhaustive_search_finds() {
 }
 
 #[test]
+fn all_hits_begin_with_the_closest_and_are_odd_in_number_from_inside_with_every_kernel() {
+    let mesh = icosphere(3);
+    for kernel in Kernel::available() {
+        let mut random = Random(11);
+        let set = build(&mesh).with_kernel(kernel).unwrap();
+        for size in [0.5, 4.0].repeat(1000) {
+            let ray = ray(random.direction() * size, random.direction());
+            let mut found = Vec::new();
+            set.all_hits(&ray, &mut found);
+            found.sort_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
+            assert_eq!(found.first().copied(), set.closest_hit(&ray));
+            assert_eq!(found.len() % 2 == 1, size < 1.0);
+            if let [first, last] = found[..] {
+                let ray = Ray { t_max: last.t, ..ray };
+                found.clear();
+                set.all_hits(&ray, &mut found);
+                assert_eq!(found, [first]);
+            }
+        }
+    }
+}
+
+#[test]
+fn only_faces_of_two_bodies_in_one_plane_touch() {
+    let square = |z: f64, size: f64| {
+        [[-size, -size, z], [size, -size, z], [size, size, z], [-size, size, z]]
+    };
+    let touching = |heights: [f64; 2]| {
+        let vertices = [square(heights[0], 50.0), square(heights[1], 7.3)].concat();
+        let triangles = [[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]];
+        let set = Triangles::build(&vertices, &triangles).unwrap();
+        let mut found = set.touching(&[0, 0, 1, 1], set.rounding(), |_, _| true);
+        found.sort_unstable();
+        found
+    };
+    assert_eq!(touching([1.0, 1.0]), [0, 1, 2, 3]);
+    assert_eq!(touching([1.0, 1.0 + 1e-5]), [0, 1, 2, 3]);
+    assert!(touching([1.0, 1.0 + 1e-4]).is_empty());
+}
+
+#[test]
 fn a_camera_may_be_a_thousand_kilometres_away() {
     let mesh = icosphere(4);
     let sphere = build(&mesh);
