@@ -4,17 +4,22 @@
 from __future__ import annotations
 
 import itertools
+import sys
 import time
 from pathlib import Path
 
 import numpy as np
 import pytest
-import tomllib
 import trimesh
 from scipy.spatial import cKDTree
 
 from lamplit.errors import LamplitError, OutputError
 from lamplit.lamps import lamp_names, lamp_parameters, write_lamp
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
 
 VARIANTS = [
     ("p21w", {}),

@@ -11,7 +11,7 @@ pub struct TriangleHit {
     /// Distance along the ray.
     pub t: f64,
     /// Index of the triangle in the list that was given to
-    /// [`Triangles::build`](super::Triangles::build).
+    /// [`Triangles::build`](crate::geometry::Triangles::build).
     pub triangle: u32,
     /// Weights u of the second and v of the third corner; that of the first is 1 − u − v.
     pub barycentric: [f64; 2],
