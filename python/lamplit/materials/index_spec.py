@@ -16,6 +16,7 @@ is an error unless ``extension`` says "constant" or, for a formula, "formula".
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import Annotated, Literal, TypeAlias
 
 import numpy as np
@@ -62,7 +63,7 @@ class _Form(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
 
-class _FormulaForm(_Form):
+class _FormulaForm(_Form, ABC):
     """An index by formula: where it holds, and what holds beyond."""
 
     range_nm: Annotated[tuple[Positive, Positive], Field(strict=False)] = Field(
@@ -78,9 +79,9 @@ class _FormulaForm(_Form):
         number, coefficients = self.numbered()
         return formula_distribution(number, coefficients, self.range_nm, extension=self.extension)
 
+    @abstractmethod
     def numbered(self) -> tuple[int, tuple[float, ...]]:
         """Return the number and the coefficients of the refractiveindex.info formula."""
-        raise NotImplementedError
 
     @model_validator(mode="after")
     def _check(self) -> _FormulaForm:

@@ -18,6 +18,7 @@ means without the reflections at the two faces; divide a measured total transmit
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from typing import Annotated, TypeAlias
 
 import numpy as np
@@ -50,18 +51,18 @@ _Thickness: TypeAlias = Annotated[
 ]
 
 
-class Absorber(BaseModel):
+class Absorber(BaseModel, ABC):
     """What every form of transmittance can say."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
+    @abstractmethod
     def absorption_per_mm(self, wavelengths_nm: ArrayLike) -> Array:
         """Return the napierian absorption coefficient α in 1/mm, of the wavelengths' shape.
 
         Raises:
             SpectrumError: A wavelength lies outside the data, and they do not say how to go on.
         """
-        raise NotImplementedError
 
     def transmittance(self, wavelengths_nm: ArrayLike, thickness_mm: float) -> Array:
         """Return the internal transmittance exp(−α b) of ``thickness_mm``."""
@@ -71,9 +72,9 @@ class Absorber(BaseModel):
 class _Measured(Absorber):
     thickness_mm: _Thickness
 
+    @abstractmethod
     def distribution(self) -> SpectralDistribution:
         """Return t(λ) at the reference thickness."""
-        raise NotImplementedError
 
     def absorption_per_mm(self, wavelengths_nm: ArrayLike) -> Array:
         """Return α = −ln t / b₀."""
