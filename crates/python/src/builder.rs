@@ -248,6 +248,7 @@ impl SceneBuilder {
             half_height: vector(half_height_mm),
             radiance: table(&radiance)?,
             edge_softness,
+            group: 0,
         });
         Ok(())
     }
@@ -261,7 +262,8 @@ impl SceneBuilder {
         let builder = std::mem::take(&mut self.scene);
         let lights = std::mem::take(&mut self.lights);
         let soft_boxes = std::mem::take(&mut self.soft_boxes);
-        let background = Background { base: self.base.clone(), soft_boxes };
+        let background =
+            Background::new(self.base.clone(), 0, soft_boxes, Vec::new(), &colour_matching[1]);
         let ambient = self.ambient.clone();
         py.detach(|| builder.build(camera, lights, ambient, background, colour_matching))
             .map(Scene::from)

@@ -4,5 +4,7 @@
 mod background;
 mod lamp;
 
-pub use background::{Background, Base, SoftBox};
+pub use background::{
+    Background, Base, ImageError, ImageMap, Sky, SkyModel, SoftBox, Sun, CIE_GENERAL_SKIES,
+};
 pub use lamp::{Light, LightSample, LightShape};

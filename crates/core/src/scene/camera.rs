@@ -102,8 +102,9 @@ impl Camera {
                 Ray::endless(self.position, (self.forward + aside).normalize())
             }
             Projection::ThinLens { aperture, focus, .. } => {
-                let on_lens = uniform_disc(u) * (aperture / 2.0);
-                let across = self.right.normalize() * on_lens.x + self.half_up.normalize() * on_lens.y;
+                let [x, y] = uniform_disc([u.x, u.y]);
+                let on_lens = self.right.normalize() * x + self.half_up.normalize() * y;
+                let across = on_lens * (aperture / 2.0);
                 let in_focus = (self.forward + aside) * focus;
                 Ray::endless(self.position + across, (in_focus - across).normalize())
             }

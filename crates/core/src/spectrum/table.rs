@@ -62,6 +62,19 @@ impl SpectralTable {
         self.rows.len()
     }
 
+    /// The inner product of two tables over all their wavelengths, per phase: with ȳ in cd/m² per
+    /// spectral radiance it is the luminance that P samples would find on average.
+    pub fn mean_dot(&self, other: &Self) -> f64 {
+        let sum: f64 = self.rows.iter().zip(&other.rows).map(|(a, b)| a.dot(*b)).sum();
+        sum / self.rows.len() as f64
+    }
+
+    /// The table with every value multiplied by `factor`.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        Self { rows: self.rows.iter().map(|row| *row * factor).collect() }
+    }
+
     /// Whether every value is zero.
     pub fn is_zero(&self) -> bool {
         self.rows.iter().all(|row| *row == SampledSpectrum::ZERO)

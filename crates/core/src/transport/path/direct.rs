@@ -61,7 +61,7 @@ impl PathWalk<'_> {
         self.see_emitters(&mut branch, vertex, &lanes);
         let [technique, u, v, w] = branch.sampler.next_4d();
         let background = &self.scene.background;
-        let drawn = if technique < background.aim_share() {
+        let drawn = if technique < background.aim_share(vertex.position) {
             background.aim(vertex.position, [u, v, w])
         } else {
             vertex.sample(&lanes, [u, v, w])
@@ -83,7 +83,7 @@ impl PathWalk<'_> {
     /// The density of the directions that `scatter` draws, per steradian.
     fn density(&self, vertex: &Vertex, wo: DVec3, lanes: &SampledSpectrum) -> f64 {
         let background = &self.scene.background;
-        let share = background.aim_share();
+        let share = background.aim_share(vertex.position);
         let own = vertex.pdf(wo, lanes);
         if share > 0.0 {
             let ray = Ray::endless(vertex.position, wo);
