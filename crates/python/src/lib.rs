@@ -12,7 +12,9 @@
 )]
 
 mod arrays;
+mod background;
 mod builder;
+mod material;
 mod render;
 
 use pyo3::prelude::*;
@@ -21,7 +23,11 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _core {
     #[pymodule_export]
-    use super::builder::{HallTerms, SceneBuilder};
+    use super::background::Background;
+    #[pymodule_export]
+    use super::builder::SceneBuilder;
+    #[pymodule_export]
+    use super::material::{HallTerms, Matter};
     #[pymodule_export]
     use super::render::{Render, Scene};
 

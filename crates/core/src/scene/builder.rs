@@ -8,10 +8,10 @@ use super::camera::Camera;
 use super::contact::Contacts;
 use super::world::Scene;
 use crate::geometry::{Primitive, Triangles, TrianglesError};
-use crate::light::{Background, Light};
+use crate::light::{Background, Emitters, Light};
 use crate::math::DVec3;
 use crate::matter::Material;
-use crate::spectrum::SpectralTable;
+use crate::spectrum::{SampledSpectrum, SpectralTable, LANES};
 
 /// Why a scene cannot be built.
 #[derive(Debug, Error)]
@@ -131,6 +131,8 @@ impl SceneBuilder {
             &self.mesh_boxes(),
             &self.primitives,
         );
+        let emitter_numbers = vec![None; self.bodies.len()];
+        let groups = 1;
         Ok(Scene {
             contacts,
             materials: self.materials,
@@ -143,6 +145,10 @@ impl SceneBuilder {
             lights,
             ambient,
             background,
+            emitters: Emitters::default(),
+            emitter_numbers,
+            groups,
+            visibility: visibility(&colour_matching),
             colour_matching,
         })
     }
@@ -163,4 +169,15 @@ impl SceneBuilder {
         }
         boxes
     }
+}
+
+/// How much each lane matters to the eye: X + Y + Z of the lane, and a hundredth of their mean so
+/// that no lane is nothing; together 1 in each phase.
+fn visibility(colour_matching: &[SpectralTable; 3]) -> SpectralTable {
+    SpectralTable::combine(colour_matching, |[x, y, z]| {
+        let seen = x + y + z;
+        let sum = seen.dot(SampledSpectrum::ONE).max(f64::MIN_POSITIVE);
+        let least = 0.01 * sum / LANES as f64;
+        seen.map(|value| (value + least) / (1.01 * sum))
+    })
 }

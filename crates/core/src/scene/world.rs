@@ -6,7 +6,7 @@ use super::camera::Camera;
 use super::contact::Contacts;
 use super::interior::Interior;
 use crate::geometry::{Primitive, SurfacePoint, TriangleHit, Triangles};
-use crate::light::{Background, Light};
+use crate::light::{Background, Emitters, Light};
 use crate::math::{DVec3, Ray};
 use crate::matter::{Dielectric, Material};
 use crate::spectrum::{SampledSpectrum, SampledWavelengths, SpectralTable};
@@ -46,8 +46,16 @@ pub struct Scene {
     pub ambient: SpectralTable,
     /// What rays see that leave the scene.
     pub background: Background,
+    /// The surfaces that shine.
+    pub emitters: Emitters,
+    /// Which of the emitters a body is, by body.
+    pub(super) emitter_numbers: Vec<Option<usize>>,
+    /// How many light groups there are.
+    pub groups: usize,
     /// The tables whose inner products with a spectral radiance are X, Y and Z in cd/m².
     pub colour_matching: [SpectralTable; 3],
+    /// How much each lane matters to the eye: never nothing, and together 1 in each phase.
+    pub visibility: SpectralTable,
 }
 
 impl Scene {
@@ -124,6 +132,32 @@ impl Scene {
     /// The material of a body.
     pub fn material_of(&self, body: BodyId) -> &Material {
         &self.materials[self.bodies[body as usize].material]
+    }
+
+    /// The number of the emitter that a body is, if it shines.
+    pub fn emitter_of(&self, body: BodyId) -> Option<usize> {
+        self.emitter_numbers[body as usize]
+    }
+
+    /// The share of the light that a surface, met from `interior`, sends back or on when it arrives
+    /// against wi; 1 for a boundary of transparent media.
+    pub fn albedo(
+        &self,
+        hit: &SurfaceHit,
+        wi: DVec3,
+        interior: &Interior,
+        wavelengths: SampledWavelengths,
+    ) -> SampledSpectrum {
+        let material = self.material_of(hit.body);
+        if material.dielectric().is_some() {
+            return SampledSpectrum::ONE;
+        }
+        let around = self.medium(interior).map(|medium| medium.index.at(wavelengths));
+        let index = around.unwrap_or(SampledSpectrum::ONE);
+        let bsdf = material.bsdf(hit.point.position, hit.point.normal, index, wavelengths);
+        let cos_i = hit.shading_normal.dot(wi).abs();
+        let local = DVec3::new((1.0 - cos_i * cos_i).max(0.0).sqrt(), 0.0, cos_i);
+        bsdf.albedo(local) + bsdf.mirror(cos_i).unwrap_or(SampledSpectrum::ZERO)
     }
 
     /// The transparent matter at a place: `None` is air.

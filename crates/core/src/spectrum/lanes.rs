@@ -146,6 +146,12 @@ impl MulAssign for SampledSpectrum {
     }
 }
 
+impl MulAssign<f64> for SampledSpectrum {
+    fn mul_assign(&mut self, factor: f64) {
+        *self = *self * factor;
+    }
+}
+
 impl Mul<f64> for SampledSpectrum {
     type Output = Self;
     fn mul(self, factor: f64) -> Self {

@@ -56,7 +56,7 @@ impl PathWalk<'_> {
     }
 
     /// Turn a branch at a vertex: ∫ f L |cos θ| dω by one direction and one look at the emitters.
-    pub(super) fn scatter(&mut self, mut branch: Branch, vertex: &Vertex) -> Option<Branch> {
+    pub(super) fn scatter(&mut self, mut branch: Branch, vertex: &Vertex<'_>) -> Option<Branch> {
         let lanes = self.lanes(branch.throughput);
         self.see_emitters(&mut branch, vertex, &lanes);
         let [technique, u, v, w] = branch.sampler.next_4d();
@@ -81,7 +81,7 @@ impl PathWalk<'_> {
     }
 
     /// The density of the directions that `scatter` draws, per steradian.
-    fn density(&self, vertex: &Vertex, wo: DVec3, lanes: &SampledSpectrum) -> f64 {
+    fn density(&self, vertex: &Vertex<'_>, wo: DVec3, lanes: &SampledSpectrum) -> f64 {
         let background = &self.scene.background;
         let share = background.aim_share(vertex.position);
         let own = vertex.pdf(wo, lanes);
@@ -94,7 +94,7 @@ impl PathWalk<'_> {
     }
 
     /// Add what one point of the emitters sends straight to a vertex.
-    fn see_emitters(&mut self, branch: &mut Branch, vertex: &Vertex, lanes: &SampledSpectrum) {
+    fn see_emitters(&mut self, branch: &mut Branch, vertex: &Vertex<'_>, lanes: &SampledSpectrum) {
         let emitters = &self.scene.emitters;
         if emitters.is_empty() {
             return;
@@ -124,7 +124,7 @@ impl PathWalk<'_> {
     /// there; none where anything is in the way but boundaries that are none to light.
     fn straight_way(
         &mut self,
-        vertex: &Vertex,
+        vertex: &Vertex<'_>,
         direction: DVec3,
         distance: f64,
         emitter: BodyId,

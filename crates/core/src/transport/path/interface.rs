@@ -20,9 +20,9 @@ impl PathWalk<'_> {
     ) -> Ways {
         let eta = self.index(&beyond) / self.index(&branch.interior);
         let material = self.scene.material_of(face.body);
-        let alpha = material.alpha_at(meeting.hit.point.normal);
-        if alpha > 0.0 {
-            let bsdf = Bsdf::interface(eta, alpha, &self.scene.albedos);
+        let roughness = material.roughness_at(meeting.hit.point.normal);
+        if roughness.is_some() {
+            let bsdf = Bsdf::interface(eta, roughness);
             let vertex = Vertex::on_interface(meeting, bsdf, branch.interior, beyond);
             return [self.scatter(branch, &vertex), None];
         }
@@ -72,12 +72,14 @@ impl PathWalk<'_> {
         let material = self.scene.material_of(meeting.hit.body);
         let medium_index = self.index(&branch.interior);
         let point = &meeting.hit.point;
-        let bsdf =
-            material.bsdf(point.position, point.normal, medium_index, self.wavelengths, &self.scene.albedos);
+        let bsdf = material.bsdf(point.position, point.normal, medium_index, self.wavelengths);
         let Some(mirror) = bsdf.mirror(meeting.cos_i) else {
             let vertex = Vertex::on_surface(meeting, bsdf, branch.interior);
             return [None, self.scatter(branch, &vertex)];
         };
+        if !bsdf.scatters() {
+            return [Some(mirrored(branch, &meeting, mirror)), None];
+        }
         let wi = Vertex::local(&meeting);
         let [choice, ..] = branch.sampler.next_4d();
         let [near, rest] = self.divide(branch, [mirror, bsdf.albedo(wi)], choice);

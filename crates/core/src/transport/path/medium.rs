@@ -7,7 +7,7 @@ use super::branch::Branch;
 use super::vertex::Vertex;
 use super::{pick, PathWalk};
 
-impl PathWalk<'_> {
+impl<'a> PathWalk<'a> {
     /// Take a branch `length` mm through `body`, or to where the body scatters it before.
     ///
     /// Absorption (Bouguer–Beer) multiplies. The distance to a scattering is drawn from
@@ -18,7 +18,7 @@ impl PathWalk<'_> {
         branch: &mut Branch,
         body: BodyId,
         length: f64,
-    ) -> Option<Vertex> {
+    ) -> Option<Vertex<'a>> {
         let medium = self.scene.material_of(body).dielectric()?;
         let mut distance = length;
         let mut vertex = None;

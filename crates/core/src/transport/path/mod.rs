@@ -59,13 +59,13 @@ pub struct PathWalk<'a> {
 }
 
 /// What a branch comes to.
-enum Event {
+enum Event<'a> {
     /// It leaves the scene.
     Escape,
     /// It is lost, and counted.
     Lost,
     /// It is scattered inside a body.
-    Scattering(Vertex),
+    Scattering(Vertex<'a>),
     /// It meets opaque matter.
     Surface(Meeting),
     /// It meets the boundary between two transparent media.
@@ -120,7 +120,7 @@ impl<'a> PathWalk<'a> {
     }
 
     /// Follow a branch to what it meets next, through all surfaces that are none to light.
-    fn next_event(&mut self, branch: &mut Branch) -> Event {
+    fn next_event(&mut self, branch: &mut Branch) -> Event<'a> {
         loop {
             self.tally.eye_rays += 1;
             let place = self.scene.first_place(&branch.ray);
@@ -160,7 +160,7 @@ impl<'a> PathWalk<'a> {
         }
     }
 
-    fn lose(&mut self, branch: &Branch, body: BodyId, cause: LostRay) -> Event {
+    fn lose(&mut self, branch: &Branch, body: BodyId, cause: LostRay) -> Event<'a> {
         self.tally.lose(body, cause);
         self.tally.ledger.lose(self.weight(branch.throughput));
         Event::Lost

@@ -3,22 +3,22 @@
 
 use crate::geometry::SurfacePoint;
 use crate::math::{orthonormal_pair, DMat3, DVec3};
-use crate::matter::{phase, sample_phase, Bsdf};
+use crate::matter::{henyey_greenstein, sample_henyey_greenstein, Bsdf};
 use crate::scene::Interior;
 use crate::spectrum::SampledSpectrum;
 
 use super::Meeting;
 
 /// Where a branch is turned at random.
-pub(super) struct Vertex {
+pub(super) struct Vertex<'a> {
     /// Where it is.
     pub position: DVec3,
     /// The bodies on the side that the branch comes from.
     pub near: Interior,
-    place: Place,
+    place: Place<'a>,
 }
 
-enum Place {
+enum Place<'a> {
     Surface {
         point: SurfacePoint,
         /// The surface's normal on the branch's side.
@@ -27,7 +27,7 @@ enum Place {
         frame: DMat3,
         /// The direction back along the branch, in the frame.
         wi: DVec3,
-        bsdf: Bsdf,
+        bsdf: Bsdf<'a>,
         /// The bodies on the far side.
         far: Interior,
     },
@@ -37,14 +37,14 @@ enum Place {
     },
 }
 
-impl Vertex {
+impl<'a> Vertex<'a> {
     /// A vertex on opaque matter or on a sheet, with `near` on both sides.
-    pub fn on_surface(meeting: Meeting, bsdf: Bsdf, near: Interior) -> Self {
+    pub fn on_surface(meeting: Meeting, bsdf: Bsdf<'a>, near: Interior) -> Self {
         Self::on_interface(meeting, bsdf, near, near)
     }
 
     /// A vertex on a rough boundary between the media of `near` and `far`.
-    pub fn on_interface(meeting: Meeting, bsdf: Bsdf, near: Interior, far: Interior) -> Self {
+    pub fn on_interface(meeting: Meeting, bsdf: Bsdf<'a>, near: Interior, far: Interior) -> Self {
         let point = meeting.hit.point;
         let frame = frame(meeting.normal);
         let wi = frame.transpose() * meeting.wi;
@@ -68,7 +68,9 @@ impl Vertex {
     pub fn answer(&self, wo: DVec3) -> SampledSpectrum {
         match &self.place {
             Place::Surface { frame, wi, bsdf, .. } => bsdf.eval(*wi, frame.transpose() * wo),
-            Place::Body { wi, anisotropy } => SampledSpectrum::splat(phase(wi.dot(wo), *anisotropy)),
+            Place::Body { wi, anisotropy } => {
+                SampledSpectrum::splat(henyey_greenstein(-wi.dot(wo), *anisotropy))
+            },
         }
     }
 
@@ -76,7 +78,7 @@ impl Vertex {
     pub fn pdf(&self, wo: DVec3, lanes: &SampledSpectrum) -> f64 {
         match &self.place {
             Place::Surface { frame, wi, bsdf, .. } => bsdf.pdf(*wi, frame.transpose() * wo, lanes),
-            Place::Body { wi, anisotropy } => phase(wi.dot(wo), *anisotropy),
+            Place::Body { wi, anisotropy } => henyey_greenstein(-wi.dot(wo), *anisotropy),
         }
     }
 
@@ -86,7 +88,9 @@ impl Vertex {
             Place::Surface { frame, wi, bsdf, .. } => {
                 bsdf.sample(*wi, lanes, u).map(|wo| (*frame * wo).normalize())
             }
-            Place::Body { wi, anisotropy } => Some(sample_phase(*wi, *anisotropy, [u[1], u[2]])),
+            Place::Body { wi, anisotropy } => {
+                Some(sample_henyey_greenstein(*wi, *anisotropy, [u[1], u[2]]))
+            },
         }
     }
 
