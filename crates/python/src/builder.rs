@@ -152,7 +152,8 @@ impl SceneBuilder {
         let (vertices, triangles) = (triples(&vertices_mm)?, triples(&triangles)?);
         let normals = normals.as_ref().map(|array| triples(array)).transpose()?;
         py.detach(|| self.scene.add_mesh(body(owner), &vertices, &triangles, normals.as_deref()))
-            .map_err(value_error)
+            .map_err(value_error)?;
+        Ok(())
     }
 
     /// Add a primitive: `numbers` are its defining points and lengths, in the order of the core's
@@ -166,7 +167,8 @@ impl SceneBuilder {
     ) -> PyResult<()> {
         let shape = shape(kind, &numbers)?;
         let primitive = Primitive::new(shape, affine(transform)).map_err(value_error)?;
-        self.scene.add_primitive(body(owner), primitive).map_err(value_error)
+        self.scene.add_primitive(body(owner), primitive).map_err(value_error)?;
+        Ok(())
     }
 
     #[pyo3(signature = (position_mm, target_mm, up, *, field_of_view_deg=None, height_mm=None))]

@@ -4,6 +4,7 @@
 use super::body::{Body, BodyId};
 use super::camera::Camera;
 use super::contact::Contacts;
+use super::emitters::Emitters;
 use super::interior::Interior;
 use crate::geometry::{Primitive, SurfacePoint, TriangleHit, Triangles};
 use crate::light::{Background, Light};
@@ -44,6 +45,8 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// `I_a`(λ), the spectral radiance of a perfect reflector under the ambient light.
     pub ambient: SpectralTable,
+    /// The bodies that shine.
+    pub emitters: Emitters,
     /// What rays see that leave the scene.
     pub background: Background,
     /// The tables whose inner products with a spectral radiance are X, Y and Z in cd/m².
