@@ -13,6 +13,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{affine, direction, table, triples, vector, Spectrum, Triple};
 use crate::background::Background;
+use crate::emission::Emission;
 use crate::material::{HallTerms, Matter};
 use crate::render::Scene;
 use crate::value_error;
@@ -80,6 +81,7 @@ impl SceneBuilder {
         Ok(self.scene.add_material(Material { optics, finish, hall }))
     }
 
+    /// Add a mesh and return the body's number.
     #[pyo3(signature = (owner, vertices_mm, triangles, normals=None))]
     fn add_mesh(
         &mut self,
@@ -88,14 +90,14 @@ impl SceneBuilder {
         vertices_mm: PyReadonlyArray2<'_, f64>,
         triangles: PyReadonlyArray2<'_, u32>,
         normals: Option<PyReadonlyArray2<'_, f64>>,
-    ) -> PyResult<()> {
+    ) -> PyResult<u32> {
         let (vertices, triangles) = (triples(&vertices_mm)?, triples(&triangles)?);
         let normals = normals.as_ref().map(|array| triples(array)).transpose()?;
         py.detach(|| self.scene.add_mesh(body(owner), &vertices, &triangles, normals.as_deref()))
             .map_err(value_error)
     }
 
-    /// Add a primitive: `numbers` are its defining points and lengths, in the order of the core's
+    /// Add a primitive and return the body's number: `numbers` are its defining points and lengths, in the order of the core's
     /// constructor of that `kind`.
     fn add_primitive(
         &mut self,
@@ -103,10 +105,16 @@ impl SceneBuilder {
         kind: &str,
         numbers: Vec<f64>,
         transform: [[f64; 4]; 4],
-    ) -> PyResult<()> {
+    ) -> PyResult<u32> {
         let shape = shape(kind, &numbers)?;
         let primitive = Primitive::new(shape, affine(transform)).map_err(value_error)?;
         self.scene.add_primitive(body(owner), primitive).map_err(value_error)
+    }
+
+    /// Let a body shine, counted to a light group.
+    fn add_emission(&mut self, body: u32, emission: &Emission, group: usize) -> PyResult<()> {
+        let emission = scene::Emission { group, ..emission.0.clone() };
+        self.scene.add_emission(body, emission).map_err(value_error)
     }
 
     /// `lens` is the diameter of a thin lens and the distance that is in focus, in mm.
@@ -168,19 +176,25 @@ impl SceneBuilder {
     }
 
     /// Build the scene; the builder is empty afterwards. The three spectra's inner products with a
-    /// path's spectral radiance are X, Y and Z in cd/m².
-    fn build(&mut self, py: Python<'_>, colour_matching: [Spectrum<'_>; 3]) -> PyResult<Scene> {
+    /// path's spectral radiance are X, Y and Z in cd/m²; `groups` are the names of the light groups.
+    fn build(
+        &mut self,
+        py: Python<'_>,
+        colour_matching: [Spectrum<'_>; 3],
+        groups: Vec<String>,
+    ) -> PyResult<Scene> {
         let camera = self.camera.ok_or_else(|| value_error("the scene has no camera"))?;
         let [x, y, z] = colour_matching;
         let colour_matching = [table(&x)?, table(&y)?, table(&z)?];
         let background = self.background.as_ref();
         let background = background.ok_or_else(|| value_error("the scene has no background"))?;
         let background = background.assembled(&colour_matching[1]);
-        let builder = std::mem::take(&mut self.scene);
+        let mut builder = std::mem::take(&mut self.scene);
+        builder.groups = groups.len();
         let lights = std::mem::take(&mut self.lights);
         let ambient = self.ambient.clone();
         py.detach(|| builder.build(camera, lights, ambient, background, colour_matching))
-            .map(Scene::from)
+            .map(|scene| Scene::new(scene, groups))
             .map_err(value_error)
     }
 }

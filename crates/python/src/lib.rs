@@ -14,7 +14,9 @@
 mod arrays;
 mod background;
 mod builder;
+mod emission;
 mod material;
+mod outcome;
 mod render;
 
 use pyo3::prelude::*;
@@ -29,7 +31,11 @@ mod _core {
     #[pymodule_export]
     use super::material::{HallTerms, Matter};
     #[pymodule_export]
-    use super::render::{Render, Scene};
+    use super::emission::Emission;
+    #[pymodule_export]
+    use super::outcome::Render;
+    #[pymodule_export]
+    use super::render::{HallMethod, PathMethod, Scene};
 
     /// How many wavelengths a path carries.
     #[pymodule_export]

@@ -3,6 +3,7 @@
 
 mod bvh;
 mod primitive;
+mod sampled;
 mod surface_point;
 mod triangles;
 
@@ -10,5 +11,6 @@ pub use bvh::{overlap, Kernel, PARALLEL};
 pub use primitive::{
     Cone, ConvexPolyhedron, Cylinder, Disc, Plane, Primitive, PrimitiveError, Shape, Sphere,
 };
+pub use sampled::{SampledSurface, SurfaceDirection, SurfaceSample};
 pub use surface_point::SurfacePoint;
 pub use triangles::{TriangleHit, Triangles, TrianglesError};

@@ -158,6 +158,13 @@ impl Triangles {
         found
     }
 
+    /// A vertex as rays see it, of those that the index was built over: rounded to single precision
+    /// towards the middle; and how far a point on its triangles may be off.
+    pub fn as_traced(&self, vertex: [f64; 3]) -> (DVec3, f64) {
+        let vertex = DVec3::from_array(vertex);
+        self.tree.as_ref().map_or((vertex, 0.0), |tree| tree.as_traced(vertex))
+    }
+
     /// Number of triangles.
     pub fn len(&self) -> usize {
         self.len

@@ -3,7 +3,6 @@
 
 use rayon::prelude::*;
 
-use super::settings::RenderSettings;
 use super::RenderError;
 use crate::math::{DVec2, DVec3, Ray};
 use crate::matter::refract;
@@ -36,17 +35,24 @@ const MOST_INTERFACES: u32 = 64;
 ///
 /// # Errors
 /// The camera is inside an opaque body.
-pub fn features(scene: &Scene, settings: &RenderSettings) -> Result<Vec<Features>, RenderError> {
+pub fn features(
+    scene: &Scene,
+    width: u32,
+    height: u32,
+    threads: usize,
+) -> Result<Vec<Features>, RenderError> {
     let interior = super::eye_interior(scene)?;
-    let threads = rayon::ThreadPoolBuilder::new().num_threads(settings.threads).build()?;
-    let pixels = settings.width as usize * settings.height as usize;
-    let of_pixel = |number: usize| Look { scene, settings, interior }.at_pixel(number);
-    Ok(threads.install(|| (0..pixels).into_par_iter().map(of_pixel).collect()))
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+    let pixels = width as usize * height as usize;
+    let look = Look { scene, width, height, interior };
+    let of_pixel = |number: usize| look.at_pixel(number);
+    Ok(pool.install(|| (0..pixels).into_par_iter().map(of_pixel).collect()))
 }
 
 struct Look<'a> {
     scene: &'a Scene,
-    settings: &'a RenderSettings,
+    width: u32,
+    height: u32,
     interior: Interior,
 }
 
@@ -61,7 +67,7 @@ struct Sight {
 
 impl Look<'_> {
     fn at_pixel(&self, number: usize) -> Features {
-        let width = self.settings.width as usize;
+        let width = self.width as usize;
         let corner = DVec2::new((number % width) as f64, (number / width) as f64);
         let cells = SIDE * SIDE;
         let sights = (0..cells).map(|cell| {
@@ -83,9 +89,8 @@ impl Look<'_> {
     }
 
     fn along(&self, place: DVec2, cell: u32) -> Option<Sight> {
-        let Self { scene, settings, .. } = self;
-        let middle = DVec2::splat(0.5);
-        let ray = scene.camera.ray(place, middle, settings.width, settings.height);
+        let scene = self.scene;
+        let ray = scene.camera.ray(place, DVec2::splat(0.5), self.width, self.height);
         let met = scene.first_place(&ray)?;
         let phases = scene.phases();
         let phase = (cell as usize * phases / (SIDE * SIDE) as usize) % phases;

@@ -6,9 +6,11 @@ use thiserror::Error;
 use super::body::{Body, BodyId};
 use super::camera::Camera;
 use super::contact::Contacts;
+use super::emission::Emission;
+use super::emitters::Emitters;
 use super::world::Scene;
-use crate::geometry::{Primitive, Triangles, TrianglesError};
-use crate::light::{Background, Emitters, Light};
+use crate::geometry::{Primitive, SampledSurface, Triangles, TrianglesError};
+use crate::light::{Background, Emitter, IntensityError, Light};
 use crate::math::DVec3;
 use crate::matter::Material;
 use crate::spectrum::{SampledSpectrum, SpectralTable, LANES};
@@ -39,6 +41,20 @@ pub enum SceneError {
         /// How many vertices.
         vertices: usize,
     },
+    /// A body that shines has no surface to shine from, or an endless one.
+    #[error("body {body:?} shines, and has no finite area to shine from")]
+    NoArea {
+        /// The body's name.
+        body: String,
+    },
+    /// A body cannot shine as a table says.
+    #[error("body {body:?}: {fault}")]
+    Intensity {
+        /// The body's name.
+        body: String,
+        /// Why.
+        fault: IntensityError,
+    },
 }
 
 /// A scene under construction.
@@ -52,6 +68,9 @@ pub struct SceneBuilder {
     triangle_bodies: Vec<BodyId>,
     /// One normal per vertex; zero where the mesh is flat.
     normals: Vec<[f32; 3]>,
+    emissions: Vec<(BodyId, Emission)>,
+    /// How many light groups there are.
+    pub groups: usize,
 }
 
 impl SceneBuilder {
@@ -70,17 +89,22 @@ impl SceneBuilder {
         Ok(self.bodies.len() as BodyId - 1)
     }
 
-    /// Add a body bounded by a primitive.
+    /// Add a body bounded by a primitive, and return its number.
     ///
     /// # Errors
     /// The body's material does not exist.
-    pub fn add_primitive(&mut self, body: Body, primitive: Primitive) -> Result<(), SceneError> {
+    pub fn add_primitive(
+        &mut self,
+        body: Body,
+        primitive: Primitive,
+    ) -> Result<BodyId, SceneError> {
         let id = self.add_body(body)?;
         self.primitives.push((primitive, id));
-        Ok(())
+        Ok(id)
     }
 
-    /// Add a body bounded by triangles; `normals`, one per vertex, make it smooth.
+    /// Add a body bounded by triangles, and return its number; `normals`, one per vertex, make it
+    /// smooth.
     ///
     /// # Errors
     /// The body's material does not exist, or there are not as many normals as vertices.
@@ -90,7 +114,7 @@ impl SceneBuilder {
         vertices: &[[f64; 3]],
         triangles: &[[u32; 3]],
         normals: Option<&[[f64; 3]]>,
-    ) -> Result<(), SceneError> {
+    ) -> Result<BodyId, SceneError> {
         if let Some(normals) = normals.filter(|normals| normals.len() != vertices.len()) {
             let (normals, vertices) = (normals.len(), vertices.len());
             return Err(SceneError::Normals { body: body.name, normals, vertices });
@@ -103,16 +127,21 @@ impl SceneBuilder {
         let smooth = normals.unwrap_or_default().iter().map(|n| n.map(|c| c as f32));
         self.normals.extend(smooth);
         self.normals.resize(self.vertices.len(), [0.0; 3]);
-        Ok(())
+        Ok(id)
+    }
+
+    /// Let a body shine, which no other call has made shine.
+    pub fn shine(&mut self, body: BodyId, emission: Emission) {
+        self.emissions.push((body, emission));
     }
 
     /// Build what rays need. `colour_matching` are the three tables whose inner products with a
     /// path's spectral radiance are X, Y and Z, in cd/m².
     ///
     /// # Errors
-    /// A mesh cannot be used.
+    /// A mesh cannot be used, or a body cannot shine as it should.
     pub fn build(
-        self,
+        mut self,
         camera: Camera,
         lights: Vec<Light>,
         ambient: SpectralTable,
@@ -131,8 +160,7 @@ impl SceneBuilder {
             &self.mesh_boxes(),
             &self.primitives,
         );
-        let emitter_numbers = vec![None; self.bodies.len()];
-        let groups = 1;
+        let emitters = self.emitters(triangles.as_ref())?;
         Ok(Scene {
             contacts,
             materials: self.materials,
@@ -144,13 +172,49 @@ impl SceneBuilder {
             camera,
             lights,
             ambient,
+            emitters: Emitters::new(emitters, &colour_matching[1]),
             background,
-            emitters: Emitters::default(),
-            emitter_numbers,
-            groups,
+            groups: self.groups,
             visibility: visibility(&colour_matching),
             colour_matching,
         })
+    }
+
+    /// The bodies that shine, with their surfaces.
+    fn emitters(
+        &mut self,
+        triangles: Option<&Triangles>,
+    ) -> Result<Vec<(Emitter, SampledSurface)>, SceneError> {
+        let emissions = std::mem::take(&mut self.emissions);
+        let on_body = |(body, emission): (BodyId, Emission)| {
+            let name = || self.bodies[body as usize].name.clone();
+            let surface =
+                self.surface(body, triangles).ok_or_else(|| SceneError::NoArea { body: name() })?;
+            let emitter = emission.on(body, &surface);
+            let fault = |fault| SceneError::Intensity { body: name(), fault };
+            Ok((emitter.map_err(fault)?, surface))
+        };
+        emissions.into_iter().map(on_body).collect()
+    }
+
+    /// The surface of a body as rays see it; `None` without a finite area.
+    fn surface(&self, body: BodyId, triangles: Option<&Triangles>) -> Option<SampledSurface> {
+        if let Some((primitive, _)) = self.primitives.iter().find(|(_, id)| *id == body) {
+            return SampledSurface::primitive(primitive);
+        }
+        let traced = triangles?;
+        let mut error = 0.0_f64;
+        let mut corner = |vertex: u32| {
+            let (position, bound) = traced.as_traced(self.vertices[vertex as usize]);
+            error = error.max(bound);
+            position
+        };
+        // Bodies are numbered as they come, so the triangles of each lie together.
+        let first = self.triangle_bodies.partition_point(|id| *id < body);
+        let end = self.triangle_bodies.partition_point(|id| *id <= body);
+        let own = &self.triangles[first..end];
+        let corners = own.iter().map(|triangle| triangle.map(&mut corner)).collect();
+        SampledSurface::triangles(corners, error)
     }
 
     /// The boxes of the bodies that have triangles.

@@ -6,6 +6,8 @@ mod builder;
 mod camera;
 mod contact;
 mod crossing;
+mod emission;
+mod emitters;
 mod interior;
 mod world;
 
@@ -13,5 +15,7 @@ pub use body::{Body, BodyId};
 pub use builder::{SceneBuilder, SceneError};
 pub use camera::{Camera, CameraError, Projection};
 pub use crossing::{Face, Place};
+pub use emission::{Distribution, Emission, Strength};
+pub use emitters::{EmitterSample, Emitters};
 pub use interior::{Interior, LostRay};
 pub use world::{Scene, SurfaceHit};

@@ -4,9 +4,10 @@
 use super::body::{Body, BodyId};
 use super::camera::Camera;
 use super::contact::Contacts;
+use super::emitters::Emitters;
 use super::interior::Interior;
 use crate::geometry::{Primitive, SurfacePoint, TriangleHit, Triangles};
-use crate::light::{Background, Emitters, Light};
+use crate::light::{Background, Light};
 use crate::math::{DVec3, Ray};
 use crate::matter::{Dielectric, Material};
 use crate::spectrum::{SampledSpectrum, SampledWavelengths, SpectralTable};
@@ -44,12 +45,10 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// `I_a`(λ), the spectral radiance of a perfect reflector under the ambient light.
     pub ambient: SpectralTable,
+    /// The bodies that shine.
+    pub emitters: Emitters,
     /// What rays see that leave the scene.
     pub background: Background,
-    /// The surfaces that shine.
-    pub emitters: Emitters,
-    /// Which of the emitters a body is, by body.
-    pub(super) emitter_numbers: Vec<Option<usize>>,
     /// How many light groups there are.
     pub groups: usize,
     /// The tables whose inner products with a spectral radiance are X, Y and Z in cd/m².
@@ -132,11 +131,6 @@ impl Scene {
     /// The material of a body.
     pub fn material_of(&self, body: BodyId) -> &Material {
         &self.materials[self.bodies[body as usize].material]
-    }
-
-    /// The number of the emitter that a body is, if it shines.
-    pub fn emitter_of(&self, body: BodyId) -> Option<usize> {
-        self.emitter_numbers[body as usize]
     }
 
     /// The share of the light that a surface, met from `interior`, sends back or on when it arrives

@@ -62,6 +62,6 @@ impl TriangleHit {
 /// within the next test is dealt with there: a ray that starts on a triangle, as far as the test
 /// can tell, does not cross it.
 #[inline(always)]
-fn position_error(position: DVec3, half_extent: DVec3) -> f64 {
+pub(super) fn position_error(position: DVec3, half_extent: DVec3) -> f64 {
     f64::EPSILON * (16.0 * half_extent.max_element() + 4.0 * position.abs().max_element())
 }

@@ -177,6 +177,13 @@ impl Tree {
         [centre - half_extent, centre + half_extent]
     }
 
+    /// A vertex as the blocks hold it, and the bound of error for points round it.
+    pub fn as_traced(&self, vertex: DVec3) -> (DVec3, f64) {
+        let Frame { centre, half_extent, .. } = self.frame;
+        let rounded = centre + (vertex - centre).as_vec3().as_dvec3();
+        (rounded, hit::position_error(rounded, half_extent))
+    }
+
     /// Bytes of nodes and blocks.
     pub fn memory_bytes(&self) -> usize {
         size_of_val(self.nodes.as_slice()) + size_of_val(self.blocks.as_slice())

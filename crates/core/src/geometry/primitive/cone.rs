@@ -2,7 +2,7 @@
 //! The capped cone.
 
 use super::cylinder::slab;
-use super::{positive, roots, unit, Crossing, PrimitiveError};
+use super::{positive, roots, unit, Crossing, Mantle, Patch, PrimitiveError};
 use crate::math::DVec3;
 
 /// The points inside a cone, from its base to its apex.
@@ -63,6 +63,14 @@ impl Cone {
         let enter = found.iter().copied().min_by(|p, q| p.t.total_cmp(&q.t))?;
         let leave = found.iter().copied().max_by(|p, q| p.t.total_cmp(&q.t))?;
         (enter.t < leave.t).then_some([enter, leave])
+    }
+
+    pub(super) fn patches(&self) -> Vec<Patch> {
+        let Self { base, axis, radius, height } = *self;
+        vec![
+            Patch::Mantle(Mantle { base, axis, radii: [radius, 0.0], height }),
+            Patch::Disc { centre: base, normal: -axis, radius },
+        ]
     }
 
     pub(super) fn bounding_sphere(&self) -> (DVec3, f64) {

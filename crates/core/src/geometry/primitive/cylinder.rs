@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 OR MIT
 //! The capped cylinder.
 
-use super::{positive, roots, unit, Crossing, PrimitiveError};
+use super::{positive, roots, unit, Crossing, Mantle, Patch, PrimitiveError};
 use crate::math::DVec3;
 
 /// The points within a radius of an axis, between two caps.
@@ -45,6 +45,15 @@ impl Cylinder {
         let enter = if caps[0].t > wall[0].t { caps[0] } else { wall[0] };
         let leave = if caps[1].t < wall[1].t { caps[1] } else { wall[1] };
         (enter.t < leave.t).then_some([enter, leave])
+    }
+
+    pub(super) fn patches(&self) -> Vec<Patch> {
+        let Self { base, axis, radius, height } = *self;
+        vec![
+            Patch::Mantle(Mantle { base, axis, radii: [radius, radius], height }),
+            Patch::Disc { centre: base, normal: -axis, radius },
+            Patch::Disc { centre: base + axis * height, normal: axis, radius },
+        ]
     }
 
     pub(super) fn bounding_sphere(&self) -> (DVec3, f64) {

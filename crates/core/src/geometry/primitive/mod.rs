@@ -7,6 +7,7 @@
 
 mod cone;
 mod cylinder;
+mod patch;
 mod plane;
 mod polyhedron;
 mod sphere;
@@ -16,6 +17,8 @@ use thiserror::Error;
 use super::bvh::overlap;
 use super::surface_point::SurfacePoint;
 use crate::math::{gamma, largest_component, DAffine3, DMat3, DVec3, Ray};
+
+pub(super) use patch::{Mantle, Patch};
 
 pub use cone::Cone;
 pub use cylinder::Cylinder;
@@ -137,6 +140,30 @@ impl Primitive {
             .max(largest_component(self.to_world.matrix3.z_axis));
         let world_size = largest_component(position) + largest_component(self.to_world.translation);
         8.0 * gamma(16) * (local_size * stretch + world_size)
+    }
+
+    /// The pieces of its surface in its own frame; `None` for an endless plane.
+    pub(super) fn patches(&self) -> Option<Vec<Patch>> {
+        match &self.shape {
+            Shape::Sphere(sphere) => Some(sphere.patches()),
+            Shape::Polyhedron(body) => Some(body.patches()),
+            Shape::Cylinder(cylinder) => Some(cylinder.patches()),
+            Shape::Cone(cone) => Some(cone.patches()),
+            Shape::Disc(disc) => Some(disc.patches()),
+            Shape::Plane(_) => None,
+        }
+    }
+
+    /// Where it stands.
+    pub(super) fn placement(&self) -> DAffine3 {
+        self.to_world
+    }
+
+    /// A bound of [`SurfacePoint::error`] for all its points, if it has an end.
+    pub(super) fn largest_error(&self) -> f64 {
+        let (centre, radius) = self.shape.bounding_sphere();
+        let farthest = self.bounds().map_or(DVec3::ZERO, |(lo, hi)| lo.abs().max(hi.abs()));
+        self.position_error(centre.abs() + DVec3::splat(radius), farthest)
     }
 
     /// The primitive's box in the world; `None` for an endless plane.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 OR MIT
 //! The plane and the disc: open surfaces, which only opaque matter may cover.
 
-use super::{positive, unit, Crossing, PrimitiveError};
+use super::{positive, unit, Crossing, Patch, PrimitiveError};
 use crate::math::DVec3;
 
 /// An endless plane through a point.
@@ -50,6 +50,11 @@ impl Disc {
         let crossing = self.plane.crossing(origin, direction)?;
         let from_centre = origin + direction * crossing.t - self.plane.point;
         (from_centre.length_squared() <= self.radius * self.radius).then_some(crossing)
+    }
+
+    pub(super) fn patches(&self) -> Vec<Patch> {
+        let Plane { point: centre, normal } = self.plane;
+        vec![Patch::Disc { centre, normal, radius: self.radius }]
     }
 
     pub(super) fn bounding_sphere(&self) -> (DVec3, f64) {

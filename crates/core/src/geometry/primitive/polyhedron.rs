@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 OR MIT
 //! Convex polyhedra with up to six faces: the triangular pyramid and the box.
 
-use super::{positive, Crossing, PrimitiveError};
-use crate::math::DVec3;
+use super::{positive, Crossing, Patch, PrimitiveError};
+use crate::math::{orthonormal_pair, DMat3, DVec3};
 
 /// The points x with nᵢ·x ≤ dᵢ for every face i.
 #[derive(Clone, Debug)]
@@ -66,6 +66,36 @@ impl ConvexPolyhedron {
             }
         }
         (enter.t < leave.t).then_some([enter, leave])
+    }
+
+    pub(super) fn patches(&self) -> Vec<Patch> {
+        (0..self.faces.len()).map(|at| Patch::Polygon(self.corners(at))).collect()
+    }
+
+    /// The corners of a face: where its plane meets those of two others, and no half-space cuts that
+    /// point off.
+    fn corners(&self, face: usize) -> Vec<DVec3> {
+        let tolerance = 1e-9 * self.radius;
+        let (normal, offset) = self.faces[face];
+        let mut corners: Vec<DVec3> = Vec::new();
+        for (i, (second, second_offset)) in self.faces.iter().enumerate() {
+            for (third, third_offset) in &self.faces[..i] {
+                let planes = DMat3::from_cols(normal, *second, *third).transpose();
+                let point = planes.inverse() * DVec3::new(offset, *second_offset, *third_offset);
+                let is_inside = |(n, d): &(DVec3, f64)| n.dot(point) <= d + tolerance;
+                if point.is_finite()
+                    && self.faces.iter().all(is_inside)
+                    && corners.iter().all(|known| known.distance(point) > tolerance)
+                {
+                    corners.push(point);
+                }
+            }
+        }
+        let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
+        let (x, y) = orthonormal_pair(normal);
+        let angle = |p: &DVec3| (*p - middle).dot(y).atan2((*p - middle).dot(x));
+        corners.sort_by(|a, b| angle(a).total_cmp(&angle(b)));
+        corners
     }
 
     pub(super) fn bounding_sphere(&self) -> (DVec3, f64) {

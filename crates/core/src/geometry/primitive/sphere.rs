@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 OR MIT
 //! The sphere.
 
-use super::{positive, Crossing, PrimitiveError};
+use super::{positive, Crossing, Patch, PrimitiveError};
 use crate::math::DVec3;
 
 /// All points at distance r from a centre.
@@ -44,6 +44,10 @@ impl Sphere {
     pub(super) fn project(&self, point: DVec3) -> DVec3 {
         let from_centre = point - self.centre;
         self.centre + from_centre * (self.radius / from_centre.length())
+    }
+
+    pub(super) fn patches(&self) -> Vec<Patch> {
+        vec![Patch::Sphere { centre: self.centre, radius: self.radius }]
     }
 
     pub(super) fn bounding_sphere(&self) -> (DVec3, f64) {

@@ -60,8 +60,9 @@ impl SoftBox {
         if normal.dot(towards) >= 0.0 {
             return 0.0;
         }
-        let corner =
-            |x: f64, y: f64| (towards + self.half_width * x + self.half_height * y).normalize();
+        let corner = |x: f64, y: f64| {
+            (towards + self.half_width * x + self.half_height * y).normalize_or_zero()
+        };
         let (a, b, c, d) =
             (corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0));
         let triangle = |p: DVec3, q: DVec3, r: DVec3| {

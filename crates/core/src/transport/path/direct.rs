@@ -32,7 +32,7 @@ impl PathWalk<'_> {
 
     /// Add what the surface at the end of a branch emits: `L_e`.
     pub(super) fn see_emission(&mut self, branch: &Branch, meeting: &Meeting) {
-        let Some(number) = self.scene.emitter_of(meeting.hit.body) else {
+        let Some(number) = self.scene.emitters.of_body(meeting.hit.body) else {
             return;
         };
         let emitters = &self.scene.emitters;
@@ -47,7 +47,7 @@ impl PathWalk<'_> {
             CameBy::OneWay => 1.0,
             CameBy::Scattering { from, pdf } => {
                 let position = meeting.hit.point.position;
-                let other = emitters.pdf(number, from, position, normal);
+                let other = emitters.pdf(number, from, position, normal, -meeting.wi);
                 pdf / (pdf + other)
             }
         };
