@@ -5,7 +5,7 @@ use lamplit_core::geometry::{
     Cone, ConvexPolyhedron, Cylinder, Disc, Plane, Primitive, Shape, Sphere,
 };
 use lamplit_core::light::{Background, Base, Light, LightShape, SoftBox};
-use lamplit_core::matter::{self, Checker, Dielectric, Material, Optics};
+use lamplit_core::matter::{self, Checker, Dielectric, Finish, Material, Optics};
 use lamplit_core::scene::{self, Body, Camera, Projection};
 use lamplit_core::spectrum::SpectralTable;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
@@ -60,7 +60,7 @@ pub struct SceneBuilder {
 
 impl SceneBuilder {
     fn material(&mut self, optics: Optics, hall: &HallTerms) -> usize {
-        self.scene.add_material(Material { optics, hall: hall.0.clone() })
+        self.scene.add_material(Material { optics, finish: Finish::SMOOTH, hall: hall.0.clone() })
     }
 }
 
@@ -95,7 +95,8 @@ impl SceneBuilder {
         hall: &HallTerms,
     ) -> PyResult<usize> {
         let (index, absorption) = (table(&index)?, table(&absorption_per_mm)?);
-        Ok(self.material(Optics::Dielectric(Dielectric { index, index_d, absorption }), hall))
+        let body = Dielectric { index, index_d, absorption, scattering: None };
+        Ok(self.material(Optics::Dielectric(body), hall))
     }
 
     fn add_conductor(
@@ -106,7 +107,7 @@ impl SceneBuilder {
         hall: &HallTerms,
     ) -> PyResult<usize> {
         let (n, k) = (table(&n)?, table(&k)?);
-        Ok(self.material(Optics::Conductor { n, k, factor }, hall))
+        Ok(self.material(Optics::Conductor { n, k, factor, lacquer: None }, hall))
     }
 
     fn add_mirror(&mut self, reflectance: Spectrum<'_>, hall: &HallTerms) -> PyResult<usize> {

@@ -7,4 +7,4 @@ mod warp;
 
 pub use filter::PixelFilter;
 pub use sequence::{PixelSampler, PixelSequence, SequenceError};
-pub use warp::uniform_sphere;
+pub use warp::{cosine_hemisphere, uniform_sphere};
