@@ -112,9 +112,9 @@ impl SceneBuilder {
     }
 
     /// Let a body shine, counted to a light group.
-    fn add_emission(&mut self, body: u32, emission: &Emission, group: usize) -> PyResult<()> {
+    fn add_emission(&mut self, body: u32, emission: &Emission, group: usize) {
         let emission = scene::Emission { group, ..emission.0.clone() };
-        self.scene.add_emission(body, emission).map_err(value_error)
+        self.scene.shine(body, emission);
     }
 
     /// `lens` is the diameter of a thin lens and the distance that is in focus, in mm.
