@@ -89,7 +89,7 @@ impl Scene {
     /// pixels. If it raises, or a signal arrives, the rendering stops and what is done comes back
     /// with `interrupted` set.
     #[pyo3(signature = (
-        width, height, samples, method, *, first_sample=0, target_error=None, time_budget_s=None,
+        width, height, samples, method, *, first_sample=0, adaptive=false, target_error=None, time_budget_s=None,
         sampling="sobol", filter="gaussian", seed=1, bands_per_lane=0, layers=false, threads=0,
         tile=64, progress=None
     ))]
@@ -101,6 +101,7 @@ impl Scene {
         samples: u32,
         method: AnyMethod<'_>,
         first_sample: u32,
+        adaptive: bool,
         target_error: Option<f64>,
         time_budget_s: Option<f64>,
         sampling: &str,
@@ -117,6 +118,7 @@ impl Scene {
             width,
             height,
             samples: first_sample..first_sample.saturating_add(samples),
+            adaptive,
             target_error,
             time_budget: time_budget.map_err(value_error)?,
             sequence: sequence(sampling, samples)?,

@@ -78,6 +78,8 @@ pub struct Film {
     pub height: u32,
     /// The sums, row by row from the upper left.
     pub pixels: Vec<PixelSums>,
+    /// How many segments were followed for each pixel.
+    pub segments: Vec<u64>,
     /// Bands per lane; 0 for a film without spectra.
     pub bands_per_lane: usize,
     /// The spectral sums, pixel by pixel, [`Film::bands`] for each.
@@ -98,6 +100,7 @@ impl Film {
             width,
             height,
             pixels: vec![PixelSums::default(); count],
+            segments: vec![0; count],
             bands_per_lane,
             band_sums: vec![0.0; count * bands_per_lane * LANES],
             band_visits: vec![0; count * bands_per_lane],

@@ -15,7 +15,7 @@ use thiserror::Error;
 use crate::film::Film;
 use crate::scene::{Interior, Scene};
 use crate::transport::Tally;
-use allocation::Allocation;
+use allocation::{Allocation, Pilot};
 use pass::Pass;
 
 pub use features::{features, Features};
@@ -78,9 +78,9 @@ pub struct Rendered {
 /// Render `scene`.
 ///
 /// The samples of a pixel are summed in their order by whichever thread holds it, so the film
-/// depends on the scene, the seed and the range of samples alone. With a target error, a first round
-/// of samples, which is then discarded, tells how many each pixel takes: as many as
-/// `settings.samples` at most. A cancelled rendering returns what it has.
+/// depends on the scene, the seed and the range of samples alone. Where samples are allotted, a
+/// first round, which is then thrown away, tells how many each pixel takes. With a time budget the
+/// clock chooses the number of samples, and nothing else. A cancelled rendering returns what it has.
 ///
 /// # Errors
 /// The camera is inside an opaque body, the depth exceeds [`DEEPEST`], or no threads can be had.
@@ -111,38 +111,60 @@ struct Rendering<'a> {
 
 impl Rendering<'_> {
     fn run(&self) -> Rendered {
+        let started = Instant::now();
         let samples = self.settings.samples.clone();
-        let pixels = u64::from(self.settings.width) * u64::from(self.settings.height);
-        let expect = |samples: u64| self.progress.total.store(samples, Ordering::Relaxed);
-        expect(pixels * samples.len() as u64);
+        self.expect(self.pixels() * samples.len() as u64);
         let mut film = self.settings.new_film(self.scene);
         let mut tally = Tally::new(self.scene.bodies.len());
-        let Some(target) = self.settings.target_error else {
-            self.expose(&mut film, &mut tally, samples, None);
+        if !self.settings.adaptive {
+            self.expose(&mut film, &mut tally, samples, None, started);
             return Rendered { film, tally, pilot_samples: 0 };
-        };
-        let pilot = samples.start..samples.end.min(samples.start + Allocation::PILOT_SAMPLES);
+        }
+        let rest = samples.end.min(samples.start + Pilot::SAMPLES);
         let mut first = Film::new(self.settings.width, self.settings.height, 0, 0);
-        self.expose(&mut first, &mut tally, pilot.clone(), None);
-        if self.progress.is_cancelled() {
+        self.expose(&mut first, &mut tally, samples.start..rest, None, started);
+        if self.progress.is_cancelled() || rest == samples.end {
+            // There is nothing but the first round, of as many samples for every pixel.
             return Rendered { film: first, tally, pilot_samples: 0 };
         }
-        let rest = pilot.end..samples.end;
-        let allocation = Allocation::from_pilot(&first, target, rest.len() as u32);
-        expect(pixels * pilot.len() as u64 + allocation.total());
-        self.expose(&mut film, &mut tally, rest, Some(&allocation));
-        Rendered { film, tally, pilot_samples: pilot.len() as u32 }
+        let pilot_samples = rest - samples.start;
+        let allocation = self.allocate(&first, samples.end - rest, started);
+        self.expect(self.pixels() * u64::from(pilot_samples) + allocation.total());
+        let range = rest..rest.saturating_add(allocation.most());
+        self.expose(&mut film, &mut tally, range, Some(&allocation), started);
+        Rendered { film, tally, pilot_samples }
     }
 
-    /// Take samples of every pixel, or as many of them as it is allotted.
+    /// Allot what is left, in samples or in time, as the first round says.
+    fn allocate(&self, first: &Film, mean_samples: u32, started: Instant) -> Allocation {
+        let pilot = Pilot::of(first);
+        let mut affordable = f64::from(mean_samples);
+        if let Some(budget) = self.settings.time_budget {
+            let spent = started.elapsed().as_secs_f64();
+            let each = spent * pilot.cost() / first.segments.iter().sum::<u64>() as f64;
+            affordable = affordable.min((budget.as_secs_f64() - spent).max(0.0) / each);
+        }
+        pilot.allocate(affordable, self.settings.target_error)
+    }
+
+    fn pixels(&self) -> u64 {
+        u64::from(self.settings.width) * u64::from(self.settings.height)
+    }
+
+    fn expect(&self, samples: u64) {
+        self.progress.total.store(samples, Ordering::Relaxed);
+    }
+
+    /// Take samples of every pixel, or as many of them as it is allotted; without an allocation, as
+    /// many as the time allows.
     fn expose(
         &self,
         film: &mut Film,
         tally: &mut Tally,
         samples: Range<u32>,
         allocation: Option<&Allocation>,
+        started: Instant,
     ) {
-        let started = Instant::now();
         let (mut next, mut length) = (samples.start, 1);
         while next < samples.end && !self.progress.is_cancelled() {
             let end = samples.end.min(next + length);
@@ -152,16 +174,15 @@ impl Rendering<'_> {
             tally.add(&pass.run(film));
             next = end;
             length = (length * 2).min(LONGEST_PASS);
-            if let Some(budget) = self.settings.time_budget {
+            if let (Some(budget), None) = (settings.time_budget, allocation) {
                 let spent = started.elapsed().as_secs_f64();
-                let each = spent / f64::from(next - samples.start);
-                let left = (budget.as_secs_f64() - spent) / each;
-                if left < 1.0 {
+                let left = (budget.as_secs_f64() - spent) / spent;
+                let affordable = (left * f64::from(next - samples.start)) as u32;
+                if affordable == 0 {
                     break;
                 }
-                length = length.min(left as u32);
+                length = length.min(affordable);
             }
         }
     }
 }
-

@@ -29,6 +29,7 @@ pub(super) struct Pass<'a> {
 /// The sums of one pixel.
 struct Exposure<'a> {
     pixel: &'a mut PixelSums,
+    segments: &'a mut u64,
     bands: BandSums<'a>,
     layers: &'a mut [PixelSums],
 }
@@ -45,14 +46,15 @@ impl Pass<'_> {
         let layer_sums = split(&mut film.layer_sums, tile * layers, count);
         film.pixels
             .par_chunks_mut(tile)
+            .zip(film.segments.par_chunks_mut(tile))
             .zip(sums)
             .zip(visits)
             .zip(layer_sums)
             .enumerate()
-            .map(|(at, (((pixels, sums), visits), layer_sums))| {
+            .map(|(at, ((((pixels, segments), sums), visits), layer_sums))| {
                 let mut tally = Tally::new(self.scene.bodies.len());
                 let mut gathered = Gathered::new(layers);
-                for (i, pixel) in pixels.iter_mut().enumerate() {
+                for (i, (pixel, segments)) in pixels.iter_mut().zip(segments).enumerate() {
                     if self.progress.is_cancelled() {
                         break;
                     }
@@ -61,7 +63,7 @@ impl Pass<'_> {
                         visits: &mut visits[i * per_lane..(i + 1) * per_lane],
                     };
                     let layers = &mut layer_sums[i * layers..(i + 1) * layers];
-                    let exposure = Exposure { pixel, bands, layers };
+                    let exposure = Exposure { pixel, segments, bands, layers };
                     self.expose(at * tile + i, exposure, &mut gathered, &mut tally);
                 }
                 tally
@@ -89,10 +91,11 @@ impl Pass<'_> {
         gathered: &mut Gathered,
         tally: &mut Tally,
     ) {
-        let Exposure { pixel, mut bands, layers } = exposure;
+        let Exposure { pixel, segments, mut bands, layers } = exposure;
         let samples = self.samples_of(number);
         let phases = self.scene.phases();
         let done = u64::from(samples.end - samples.start);
+        let before = tally.segments();
         for sample in samples {
             let wavelengths = self.take(number, sample, gathered, tally);
             let layers_are_sound = gathered.layers.iter().flatten().all(|value| value.is_finite());
@@ -108,6 +111,7 @@ impl Pass<'_> {
                 bands.add(gathered.radiance, wavelengths, phases);
             }
         }
+        *segments += tally.segments() - before;
         self.progress.done.fetch_add(done, Ordering::Relaxed);
     }
 

@@ -26,10 +26,13 @@ pub struct RenderSettings {
     pub width: u32,
     /// Rows.
     pub height: u32,
-    /// Which samples of every pixel.
+    /// Which samples of every pixel; where they are allotted, the first of them and as many as all
+    /// pixels together may cost, on average.
     pub samples: Range<u32>,
-    /// The standard error of a pixel's luminance that is enough, relative to the luminance of the
-    /// pixel and the mean of the picture together; none takes all samples.
+    /// Whether samples are allotted to pixels by their noise.
+    pub adaptive: bool,
+    /// The error that is enough, with `adaptive`: the root mean square over the pixels of the
+    /// luminance's standard error, relative to the luminance and 1 % of the picture's mean.
     pub target_error: Option<f64>,
     /// When to end before all samples are taken.
     pub time_budget: Option<Duration>,

@@ -31,6 +31,11 @@ impl Tally {
         Self { lost: vec![[0; 4]; bodies], ledger: Ledger::new(bodies), ..Self::default() }
     }
 
+    /// All segments.
+    pub fn segments(&self) -> u64 {
+        self.eye_rays + self.shadow_rays
+    }
+
     /// Count a lost ray.
     pub fn lose(&mut self, body: BodyId, cause: LostRay) {
         if let Some(counts) = self.lost.get_mut(body as usize) {

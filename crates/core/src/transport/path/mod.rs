@@ -43,9 +43,6 @@ pub struct PathSettings {
     pub roulette_below: f64,
 }
 
-/// A tree is split only if either way carries this share of the visible light.
-const SPLIT_ABOVE: f64 = 0.002;
-
 /// One sample's tree of rays.
 pub struct PathWalk<'a> {
     scene: &'a Scene,
@@ -206,7 +203,7 @@ impl<'a> PathWalk<'a> {
     /// one, by chance in proportion to what the eye gets of it, in the place of both.
     fn divide(&self, mut branch: Branch, shares: [SampledSpectrum; 2], u: f64) -> Ways {
         let [first, second] = shares.map(|share| self.weight(branch.throughput * share));
-        if branch.splits < self.settings.split_depth && first.min(second) >= SPLIT_ABOVE {
+        if branch.splits < self.settings.split_depth && first.min(second) > 0.0 {
             branch.splits += 1;
             let other = Branch { sampler: branch.sampler.fork(branch.splits), ..branch.clone() };
             return [Some(branch), Some(other)];
