@@ -148,10 +148,10 @@ fn every_law_on_every_surface_sends_out_the_flux_that_was_given() {
             let (all, _) = emitters(vec![(shape.clone(), to_world, emission)]);
             let (emitter, surface) = (all.get(0), all.surface(0));
             assert!(emitter.per_n2);
-            const N: usize = 200_000;
+            let n = 200_000;
             let mut random = Uniform(29);
             let (mut sum, mut squares) = (0.0, 0.0);
-            for _ in 0..N {
+            for _ in 0..n {
                 let point = surface.sample(random.triple());
                 let (cos, phi) = (random.next(), TAU * random.next());
                 let (x, y) = orthonormal_pair(point.normal);
@@ -163,8 +163,8 @@ fn every_law_on_every_surface_sends_out_the_flux_that_was_given() {
                 sum += value;
                 squares += value * value;
             }
-            let mean = sum / N as f64;
-            let error = ((squares / N as f64 - mean * mean) / N as f64).sqrt();
+            let mean = sum / f64::from(n);
+            let error = ((squares / f64::from(n) - mean * mean) / f64::from(n)).sqrt();
             assert!((mean - 1.0).abs() < 4.0 * error && error < 0.01, "{name}: {mean} ± {error}");
         }
     }
