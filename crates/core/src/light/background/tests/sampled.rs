@@ -96,16 +96,22 @@ fn aiming_at_a_clear_sky_with_sun_boxes_and_ground_follows_its_density() {
 }
 
 #[test]
-fn a_soft_box_fills_the_solid_angle_of_the_pyramid_over_it() {
+fn a_soft_box_weighs_about_the_solid_angle_that_it_fills_and_nothing_from_behind() {
     let panel = soft_box(10.0, 1.0, 0.0);
     for distance in [1e-3_f64, 0.5, 4.0, 1e4] {
         // Ω = 4·asin(ab/√((a² + d²)(b² + d²))) over the middle, for half sides a and b.
         let (a2, b2, d2) = (4.0_f64, 1.0, distance * distance);
         let expected = 4.0 * ((a2 * b2).sqrt() / ((a2 + d2) * (b2 + d2)).sqrt()).asin();
-        let found = panel.solid_angle(DVec3::Z * (10.0 - distance));
-        assert!((found / expected - 1.0).abs() < 1e-9, "{distance}: {found}, not {expected}");
+        let found = panel.apparent_size(DVec3::Z * (10.0 - distance));
+        assert!((0.6..1.4).contains(&(found / expected)), "{distance}: {found}, not {expected}");
     }
-    assert_eq!(panel.solid_angle(DVec3::Z * 11.0), 0.0);
+    for behind in [DVec3::Z * 11.0, DVec3::Z * 10.0] {
+        assert_eq!(panel.apparent_size(behind), 0.0);
+    }
+}
+
+#[test]
+fn the_mean_brightness_of_a_soft_box_is_that_of_its_faded_edges() {
     let (n, soft) = (200, soft_box(10.0, 1.0, 0.7));
     let at = |i: usize| 2.0 * (i as f64 + 0.5) / n as f64 - 1.0;
     let faded = |k: usize| {
