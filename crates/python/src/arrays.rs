@@ -11,8 +11,11 @@ use crate::value_error;
 /// Three numbers as a vector.
 pub type Triple = [f64; 3];
 
+/// The values of a spectrum on all wavelengths in rising order.
+pub type Spectrum<'py> = PyReadonlyArray1<'py, f64>;
+
 /// Read a spectrum given on all wavelengths in rising order.
-pub fn table(values: &PyReadonlyArray1<'_, f64>) -> PyResult<SpectralTable> {
+pub fn table(values: &Spectrum<'_>) -> PyResult<SpectralTable> {
     SpectralTable::from_ascending(values.as_slice()?).map_err(value_error)
 }
 
@@ -36,6 +39,12 @@ pub fn affine(matrix: [[f64; 4]; 4]) -> DAffine3 {
 /// Read a vector.
 pub fn vector(triple: Triple) -> DVec3 {
     DVec3::from_array(triple)
+}
+
+/// Read a direction of any length but zero.
+pub fn direction(triple: Triple) -> PyResult<DVec3> {
+    let none = || value_error("a direction must be finite and not zero");
+    vector(triple).try_normalize().ok_or_else(none)
 }
 
 /// Hand a vector over as an array of the given shape.

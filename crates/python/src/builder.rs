@@ -4,48 +4,19 @@
 use lamplit_core::geometry::{
     Cone, ConvexPolyhedron, Cylinder, Disc, Plane, Primitive, Shape, Sphere,
 };
-use lamplit_core::light::{Background, Base, Light, LightShape, SoftBox};
-use lamplit_core::matter::{self, Checker, Dielectric, Material, Optics};
+use lamplit_core::light::{Light, LightShape};
+use lamplit_core::matter::{AlbedoTables, Finish, Material};
 use lamplit_core::scene::{self, Body, Camera, Projection};
 use lamplit_core::spectrum::SpectralTable;
-use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
-use crate::arrays::{affine, table, triples, vector, Triple};
+use crate::arrays::{affine, direction, table, triples, vector, Spectrum, Triple};
+use crate::background::Background;
+use crate::emission::Emission;
+use crate::material::{HallTerms, Matter};
 use crate::render::Scene;
 use crate::value_error;
-
-type Spectrum<'py> = PyReadonlyArray1<'py, f64>;
-
-/// The weights k and spectra F of Hall's model for one material.
-#[pyclass(frozen, module = "lamplit._core")]
-pub struct HallTerms(matter::HallTerms);
-
-#[pymethods]
-impl HallTerms {
-    #[new]
-    #[pyo3(signature = (*, k_sr, k_st, k_sa, highlight_exponent, f_sr=None, f_st=None, f_sa=None))]
-    fn new(
-        k_sr: f64,
-        k_st: f64,
-        k_sa: f64,
-        highlight_exponent: f64,
-        f_sr: Option<Spectrum<'_>>,
-        f_st: Option<Spectrum<'_>>,
-        f_sa: Option<Spectrum<'_>>,
-    ) -> PyResult<Self> {
-        let optional = |values: Option<Spectrum<'_>>| values.as_ref().map(table).transpose();
-        Ok(Self(matter::HallTerms {
-            reflection_weight: k_sr,
-            transmission_weight: k_st,
-            ambient_weight: k_sa,
-            highlight_exponent,
-            specular_reflectance: optional(f_sr)?,
-            specular_transmittance: optional(f_st)?,
-            ambient_reflectance: optional(f_sa)?,
-        }))
-    }
-}
 
 /// A scene under construction. Spectra are arrays over all wavelengths in rising order.
 #[pyclass(module = "lamplit._core")]
@@ -54,13 +25,21 @@ pub struct SceneBuilder {
     camera: Option<Camera>,
     lights: Vec<Light>,
     ambient: SpectralTable,
-    base: Base,
-    soft_boxes: Vec<SoftBox>,
+    background: Option<Background>,
+    /// One per roughness.
+    albedos: AlbedoTables,
 }
 
 impl SceneBuilder {
-    fn material(&mut self, optics: Optics, hall: &HallTerms) -> usize {
-        self.scene.add_material(Material { optics, hall: hall.0.clone() })
+    fn finish(&mut self, roughness: f64, texture: Option<(Triple, f64)>) -> PyResult<Finish> {
+        if roughness == 0.0 {
+            return Ok(Finish::SMOOTH);
+        }
+        let finish = Finish::rough(self.albedos.of(roughness).map_err(value_error)?);
+        Ok(match texture {
+            None => finish,
+            Some((facing, cos_within)) => finish.facing(direction(facing)?, cos_within),
+        })
     }
 }
 
@@ -81,65 +60,28 @@ impl SceneBuilder {
             scene: scene::SceneBuilder::default(),
             camera: None,
             lights: Vec::new(),
-            ambient: black.clone(),
-            base: Base::Constant(black),
-            soft_boxes: Vec::new(),
+            ambient: black,
+            background: None,
+            albedos: AlbedoTables::default(),
         })
     }
 
-    fn add_dielectric(
+    /// Add a material and return its number. `texture`, a direction and the cosine of an angle round
+    /// it, says which faces have the roughness.
+    #[pyo3(signature = (matter, hall, *, roughness=0.0, texture=None))]
+    fn add_material(
         &mut self,
-        index: Spectrum<'_>,
-        index_d: f64,
-        absorption_per_mm: Spectrum<'_>,
+        matter: &Matter,
         hall: &HallTerms,
+        roughness: f64,
+        texture: Option<(Triple, f64)>,
     ) -> PyResult<usize> {
-        let (index, absorption) = (table(&index)?, table(&absorption_per_mm)?);
-        Ok(self.material(Optics::Dielectric(Dielectric { index, index_d, absorption }), hall))
+        let finish = self.finish(roughness, texture)?;
+        let (optics, hall) = (matter.0.clone(), hall.0.clone());
+        Ok(self.scene.add_material(Material { optics, finish, hall }))
     }
 
-    fn add_conductor(
-        &mut self,
-        n: Spectrum<'_>,
-        k: Spectrum<'_>,
-        factor: f64,
-        hall: &HallTerms,
-    ) -> PyResult<usize> {
-        let (n, k) = (table(&n)?, table(&k)?);
-        Ok(self.material(Optics::Conductor { n, k, factor }, hall))
-    }
-
-    fn add_mirror(&mut self, reflectance: Spectrum<'_>, hall: &HallTerms) -> PyResult<usize> {
-        let optics = Optics::Mirror(table(&reflectance)?);
-        Ok(self.material(optics, hall))
-    }
-
-    fn add_diffuse(&mut self, reflectance: Spectrum<'_>, hall: &HallTerms) -> PyResult<usize> {
-        let optics = Optics::Diffuse(table(&reflectance)?);
-        Ok(self.material(optics, hall))
-    }
-
-    fn add_checker(
-        &mut self,
-        first: Spectrum<'_>,
-        second: Spectrum<'_>,
-        square_mm: f64,
-        hall: &HallTerms,
-    ) -> PyResult<usize> {
-        let (first, second) = (table(&first)?, table(&second)?);
-        Ok(self.material(Optics::Checker(Checker { first, second, square: square_mm }), hall))
-    }
-
-    fn add_glossy(
-        &mut self,
-        index: Spectrum<'_>,
-        reflectance: Spectrum<'_>,
-        hall: &HallTerms,
-    ) -> PyResult<usize> {
-        let (index, base) = (table(&index)?, table(&reflectance)?);
-        Ok(self.material(Optics::Glossy { index, base }, hall))
-    }
-
+    /// Add a mesh and return the body's number.
     #[pyo3(signature = (owner, vertices_mm, triangles, normals=None))]
     fn add_mesh(
         &mut self,
@@ -148,15 +90,14 @@ impl SceneBuilder {
         vertices_mm: PyReadonlyArray2<'_, f64>,
         triangles: PyReadonlyArray2<'_, u32>,
         normals: Option<PyReadonlyArray2<'_, f64>>,
-    ) -> PyResult<()> {
+    ) -> PyResult<u32> {
         let (vertices, triangles) = (triples(&vertices_mm)?, triples(&triangles)?);
         let normals = normals.as_ref().map(|array| triples(array)).transpose()?;
         py.detach(|| self.scene.add_mesh(body(owner), &vertices, &triangles, normals.as_deref()))
-            .map_err(value_error)?;
-        Ok(())
+            .map_err(value_error)
     }
 
-    /// Add a primitive: `numbers` are its defining points and lengths, in the order of the core's
+    /// Add a primitive and return the body's number: `numbers` are its defining points and lengths, in the order of the core's
     /// constructor of that `kind`.
     fn add_primitive(
         &mut self,
@@ -164,14 +105,22 @@ impl SceneBuilder {
         kind: &str,
         numbers: Vec<f64>,
         transform: [[f64; 4]; 4],
-    ) -> PyResult<()> {
+    ) -> PyResult<u32> {
         let shape = shape(kind, &numbers)?;
         let primitive = Primitive::new(shape, affine(transform)).map_err(value_error)?;
-        self.scene.add_primitive(body(owner), primitive).map_err(value_error)?;
-        Ok(())
+        self.scene.add_primitive(body(owner), primitive).map_err(value_error)
     }
 
-    #[pyo3(signature = (position_mm, target_mm, up, *, field_of_view_deg=None, height_mm=None))]
+    /// Let a body shine, counted to a light group.
+    fn add_emission(&mut self, body: u32, emission: &Emission, group: usize) {
+        let emission = scene::Emission { group, ..emission.0.clone() };
+        self.scene.shine(body, emission);
+    }
+
+    /// `lens` is the diameter of a thin lens and the distance that is in focus, in mm.
+    #[pyo3(signature = (
+        position_mm, target_mm, up, *, field_of_view_deg=None, height_mm=None, lens_mm=None
+    ))]
     fn set_camera(
         &mut self,
         position_mm: Triple,
@@ -179,10 +128,14 @@ impl SceneBuilder {
         up: Triple,
         field_of_view_deg: Option<f64>,
         height_mm: Option<f64>,
+        lens_mm: Option<(f64, f64)>,
     ) -> PyResult<()> {
-        let projection = match (field_of_view_deg, height_mm) {
-            (Some(field_of_view_deg), None) => Projection::Pinhole { field_of_view_deg },
-            (None, Some(height)) => Projection::Orthographic { height },
+        let projection = match (field_of_view_deg, height_mm, lens_mm) {
+            (Some(field_of_view_deg), None, None) => Projection::Pinhole { field_of_view_deg },
+            (Some(field_of_view_deg), None, Some((aperture, focus))) => {
+                Projection::ThinLens { field_of_view_deg, aperture, focus }
+            }
+            (None, Some(height), None) => Projection::Orthographic { height },
             _ => return Err(value_error("give field_of_view_deg or height_mm, and not both")),
         };
         let [position, target, up] = [position_mm, target_mm, up].map(vector);
@@ -196,11 +149,8 @@ impl SceneBuilder {
         Ok(())
     }
 
-    fn add_directional_light(&mut self, strength: Spectrum<'_>, direction: Triple) -> PyResult<()> {
-        let travels = vector(direction)
-            .try_normalize()
-            .ok_or_else(|| value_error("the direction of a light must not be zero"))?;
-        let shape = LightShape::Directional { travels };
+    fn add_directional_light(&mut self, strength: Spectrum<'_>, travels: Triple) -> PyResult<()> {
+        let shape = LightShape::Directional { travels: direction(travels)? };
         self.lights.push(Light { shape, strength: table(&strength)? });
         Ok(())
     }
@@ -221,54 +171,30 @@ impl SceneBuilder {
         Ok(())
     }
 
-    fn set_constant_background(&mut self, radiance: Spectrum<'_>) -> PyResult<()> {
-        self.base = Base::Constant(table(&radiance)?);
-        Ok(())
-    }
-
-    fn set_gradient_background(
-        &mut self,
-        zenith: Spectrum<'_>,
-        nadir: Spectrum<'_>,
-    ) -> PyResult<()> {
-        self.base = Base::Gradient { zenith: table(&zenith)?, nadir: table(&nadir)? };
-        Ok(())
-    }
-
-    /// Add a luminous rectangle whose front is on the side of `half_width` × `half_height`.
-    fn add_soft_box(
-        &mut self,
-        radiance: Spectrum<'_>,
-        centre_mm: Triple,
-        half_width_mm: Triple,
-        half_height_mm: Triple,
-        edge_softness: f64,
-    ) -> PyResult<()> {
-        self.soft_boxes.push(SoftBox {
-            centre: vector(centre_mm),
-            half_width: vector(half_width_mm),
-            half_height: vector(half_height_mm),
-            radiance: table(&radiance)?,
-            edge_softness,
-            group: 0,
-        });
-        Ok(())
+    fn set_background(&mut self, background: &Background) {
+        self.background = Some(background.clone());
     }
 
     /// Build the scene; the builder is empty afterwards. The three spectra's inner products with a
-    /// path's spectral radiance are X, Y and Z in cd/m².
-    fn build(&mut self, py: Python<'_>, colour_matching: [Spectrum<'_>; 3]) -> PyResult<Scene> {
+    /// path's spectral radiance are X, Y and Z in cd/m²; `groups` are the names of the light groups.
+    fn build(
+        &mut self,
+        py: Python<'_>,
+        colour_matching: [Spectrum<'_>; 3],
+        groups: Vec<String>,
+    ) -> PyResult<Scene> {
         let camera = self.camera.ok_or_else(|| value_error("the scene has no camera"))?;
         let [x, y, z] = colour_matching;
         let colour_matching = [table(&x)?, table(&y)?, table(&z)?];
-        let builder = std::mem::take(&mut self.scene);
+        let background = self.background.as_ref();
+        let background = background.ok_or_else(|| value_error("the scene has no background"))?;
+        let background = background.assembled(&colour_matching[1]);
+        let mut builder = std::mem::take(&mut self.scene);
+        builder.groups = groups.len();
         let lights = std::mem::take(&mut self.lights);
-        let soft_boxes = std::mem::take(&mut self.soft_boxes);
-        let background =
-            Background::new(self.base.clone(), 0, soft_boxes, Vec::new(), &colour_matching[1]);
         let ambient = self.ambient.clone();
         py.detach(|| builder.build(camera, lights, ambient, background, colour_matching))
-            .map(Scene::from)
+            .map(|scene| Scene::new(scene, groups))
             .map_err(value_error)
     }
 }

@@ -12,7 +12,11 @@
 )]
 
 mod arrays;
+mod background;
 mod builder;
+mod emission;
+mod material;
+mod outcome;
 mod render;
 
 use pyo3::prelude::*;
@@ -21,9 +25,17 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _core {
     #[pymodule_export]
-    use super::builder::{HallTerms, SceneBuilder};
+    use super::background::Background;
     #[pymodule_export]
-    use super::render::{Render, Scene};
+    use super::builder::SceneBuilder;
+    #[pymodule_export]
+    use super::material::{HallTerms, Matter};
+    #[pymodule_export]
+    use super::emission::Emission;
+    #[pymodule_export]
+    use super::outcome::Render;
+    #[pymodule_export]
+    use super::render::{HallMethod, PathMethod, Scene};
 
     /// How many wavelengths a path carries.
     #[pymodule_export]

@@ -6,17 +6,18 @@ use std::sync::atomic::Ordering;
 use std::sync::mpsc::{channel, RecvTimeoutError};
 use std::time::Duration;
 
-use lamplit_core::film::{Film, PixelSums};
-use lamplit_core::render::{render, Progress, RenderError, RenderSettings};
+use lamplit_core::render::{
+    features, render, Method, Progress, RenderError, RenderSettings, Rendered,
+};
 use lamplit_core::sampling::{PixelFilter, PixelSequence};
 use lamplit_core::scene;
-use lamplit_core::transport::{HallSettings, Tally};
-use numpy::{PyArray2, PyArray3};
+use lamplit_core::transport::{HallSettings, PathSettings};
+use numpy::PyArray3;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 
 use crate::arrays::shaped;
+use crate::outcome::Render;
 use crate::value_error;
 
 /// How often Python is asked whether to go on.
@@ -24,21 +25,54 @@ const WATCH_INTERVAL: Duration = Duration::from_millis(50);
 
 /// A scene ready to be rendered.
 #[pyclass(frozen, module = "lamplit._core")]
-pub struct Scene(scene::Scene);
+pub struct Scene {
+    scene: scene::Scene,
+    groups: Vec<String>,
+}
 
-impl From<scene::Scene> for Scene {
-    fn from(scene: scene::Scene) -> Self {
-        Self(scene)
+impl Scene {
+    /// A scene with the names of its light groups.
+    pub fn new(scene: scene::Scene, groups: Vec<String>) -> Self {
+        Self { scene, groups }
     }
 }
 
-/// What a rendering brought.
+/// The founding method, and how far it goes.
 #[pyclass(frozen, module = "lamplit._core")]
-pub struct Render {
-    film: Film,
-    tally: Tally,
-    body_names: Vec<String>,
-    interrupted: bool,
+pub struct HallMethod(HallSettings);
+
+#[pymethods]
+impl HallMethod {
+    #[new]
+    #[pyo3(signature = (*, max_depth, contribution_limit, dispersion_groups, shadows))]
+    fn new(
+        max_depth: u32,
+        contribution_limit: f64,
+        dispersion_groups: usize,
+        shadows: bool,
+    ) -> Self {
+        Self(HallSettings { max_depth, contribution_limit, dispersion_groups, shadows })
+    }
+}
+
+/// Path transport, and how its walks are spent.
+#[pyclass(frozen, module = "lamplit._core")]
+pub struct PathMethod(PathSettings);
+
+#[pymethods]
+impl PathMethod {
+    #[new]
+    #[pyo3(signature = (*, max_depth, split_depth, roulette_below))]
+    fn new(max_depth: u32, split_depth: u32, roulette_below: f64) -> Self {
+        Self(PathSettings { max_depth, split_depth, roulette_below })
+    }
+}
+
+/// Either method.
+#[derive(FromPyObject)]
+enum AnyMethod<'py> {
+    Hall(PyRef<'py, HallMethod>),
+    Path(PyRef<'py, PathMethod>),
 }
 
 #[pymethods]
@@ -46,7 +80,7 @@ impl Scene {
     /// The memory of the triangles and their hierarchy, in bytes.
     #[getter]
     fn memory_bytes(&self) -> usize {
-        self.0.memory_bytes()
+        self.scene.memory_bytes()
     }
 
     /// Render samples `first_sample`..`first_sample + samples` of every pixel.
@@ -55,9 +89,9 @@ impl Scene {
     /// pixels. If it raises, or a signal arrives, the rendering stops and what is done comes back
     /// with `interrupted` set.
     #[pyo3(signature = (
-        width, height, samples, *, first_sample=0, sampling="grid", filter="gaussian", seed=1,
-        max_depth=12, contribution_limit=1e-4, dispersion_groups=1, shadows=true,
-        bands_per_lane=0, threads=0, tile=64, progress=None
+        width, height, samples, method, *, first_sample=0, target_error=None, time_budget_s=None,
+        sampling="sobol", filter="gaussian", seed=1, bands_per_lane=0, layers=false, threads=0,
+        tile=64, progress=None
     ))]
     fn render(
         &self,
@@ -65,39 +99,65 @@ impl Scene {
         width: u32,
         height: u32,
         samples: u32,
+        method: AnyMethod<'_>,
         first_sample: u32,
+        target_error: Option<f64>,
+        time_budget_s: Option<f64>,
         sampling: &str,
         filter: &str,
         seed: u64,
-        max_depth: u32,
-        contribution_limit: f64,
-        dispersion_groups: usize,
-        shadows: bool,
         bands_per_lane: usize,
+        layers: bool,
         threads: usize,
         tile: usize,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Render> {
+        let time_budget = time_budget_s.map(Duration::try_from_secs_f64).transpose();
         let settings = RenderSettings {
             width,
             height,
             samples: first_sample..first_sample.saturating_add(samples),
+            target_error,
+            time_budget: time_budget.map_err(value_error)?,
             sequence: sequence(sampling, samples)?,
             filter: pixel_filter(filter)?,
             seed,
-            hall: HallSettings { max_depth, contribution_limit, dispersion_groups, shadows },
+            method: match method {
+                AnyMethod::Hall(hall) => Method::Hall(hall.0),
+                AnyMethod::Path(path) => Method::Path(path.0),
+            },
             bands_per_lane,
+            layers,
             threads,
             tile,
         };
-        let (outcome, interrupted) = watch(py, &self.0, &settings, progress.as_ref())?;
-        let (film, tally) = outcome.map_err(value_error)?;
-        let body_names = self.0.bodies.iter().map(|body| body.name.clone()).collect();
-        Ok(Render { film, tally, body_names, interrupted })
+        let (outcome, interrupted) = watch(py, &self.scene, &settings, progress.as_ref())?;
+        let rendered = outcome.map_err(value_error)?;
+        let bodies = self.scene.bodies.iter().map(|body| body.name.clone()).collect();
+        Ok(Render::new(rendered, bodies, self.groups.clone(), interrupted))
+    }
+
+    /// What each pixel looks at, (height, width, 9): depth in mm, the normal's three components,
+    /// the albedo's X, Y and Z, the number of interfaces, and the body's number or −1.
+    #[pyo3(signature = (width, height, *, threads=0))]
+    fn features<'py>(
+        &self,
+        py: Python<'py>,
+        width: u32,
+        height: u32,
+        threads: usize,
+    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let found = py.detach(|| features(&self.scene, width, height, threads));
+        let rows = found.map_err(value_error)?.into_iter().flat_map(|seen| {
+            let ([x, y, z], [r, g, b]) = (seen.normal.to_array(), seen.albedo);
+            let body = seen.body.map_or(-1.0, f64::from);
+            [seen.depth, x, y, z, r, g, b, seen.interfaces, body]
+        });
+        shaped(py, rows.collect(), [height as usize, width as usize, 9])
     }
 }
 
-type Outcome = Result<(Film, Tally), RenderError>;
+type Outcome = Result<Rendered, RenderError>;
 
 /// Render on another thread; ask Python every now and then whether to go on.
 fn watch(
@@ -107,8 +167,6 @@ fn watch(
     callback: Option<&Py<PyAny>>,
 ) -> PyResult<(Outcome, bool)> {
     let progress = Progress::default();
-    let pixels = u64::from(settings.width) * u64::from(settings.height);
-    let total = pixels * u64::from(settings.samples.end - settings.samples.start);
     let mut interrupted = false;
     let mut fault = None;
     let watched = &progress;
@@ -129,6 +187,7 @@ fn watch(
                         let asked = Python::attach(|py| {
                             py.check_signals()?;
                             let done = progress.done.load(Ordering::Relaxed);
+                            let total = progress.total.load(Ordering::Relaxed);
                             callback.map(|call| call.call1(py, (done, total))).transpose()
                         });
                         if let Err(error) = asked {
@@ -153,11 +212,7 @@ fn watch(
 fn sequence(name: &str, samples: u32) -> PyResult<PixelSequence> {
     match name {
         "grid" => PixelSequence::grid(samples).map_err(value_error),
-        "sobol" if samples <= PixelSequence::MOST_SAMPLES => Ok(PixelSequence::Sobol),
-        "sobol" => Err(value_error(format!(
-            "a pixel takes at most {} samples, not {samples}",
-            PixelSequence::MOST_SAMPLES
-        ))),
+        "sobol" => Ok(PixelSequence::Sobol),
         _ => Err(value_error(format!("there is no sampling {name:?}"))),
     }
 }
@@ -168,70 +223,5 @@ fn pixel_filter(name: &str) -> PyResult<PixelFilter> {
         "tent" => Ok(PixelFilter::Tent),
         "gaussian" => Ok(PixelFilter::Gaussian),
         _ => Err(value_error(format!("there is no pixel filter {name:?}"))),
-    }
-}
-
-#[pymethods]
-impl Render {
-    /// Whether a signal stopped it.
-    #[getter]
-    fn interrupted(&self) -> bool {
-        self.interrupted
-    }
-
-    /// Mean X, Y and Z in cd/m², (height, width, 3).
-    fn xyz<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        let values = self.film.pixels.iter().flat_map(PixelSums::mean).collect();
-        shaped(py, values, self.shape(3))
-    }
-
-    /// The standard errors of X, Y and Z in cd/m², (height, width, 3); infinite below two samples.
-    fn xyz_standard_error<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        let values = self.film.pixels.iter().flat_map(PixelSums::standard_error).collect();
-        shaped(py, values, self.shape(3))
-    }
-
-    /// How many samples each pixel has, (height, width).
-    fn samples<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
-        let values = self.film.pixels.iter().map(|pixel| pixel.samples).collect();
-        shaped(py, values, [self.film.height as usize, self.film.width as usize])
-    }
-
-    /// The mean spectral radiance per band, (height, width, bands), in W·m⁻²·sr⁻¹·nm⁻¹.
-    fn spectral_radiance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        shaped(py, self.film.band_means(), self.shape(self.film.bands()))
-    }
-
-    /// The counts of the tally, and lost rays by body and cause.
-    fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        const CAUSES: [&str; 4] =
-            ["left_without_entering", "entered_twice", "ended_inside", "too_many_bodies"];
-        let lost = PyDict::new(py);
-        for (name, counts) in self.body_names.iter().zip(&self.tally.lost) {
-            let by_cause = PyDict::new(py);
-            for (cause, count) in CAUSES.into_iter().zip(counts).filter(|(_, count)| **count > 0) {
-                by_cause.set_item(cause, count)?;
-            }
-            if !by_cause.is_empty() {
-                lost.set_item(name, by_cause)?;
-            }
-        }
-        let statistics = PyDict::new(py);
-        statistics.set_item("eye_rays", self.tally.eye_rays)?;
-        statistics.set_item("shadow_rays", self.tally.shadow_rays)?;
-        statistics.set_item("cut_by_depth", self.tally.cut_by_depth)?;
-        statistics.set_item("cut_by_contribution", self.tally.cut_by_contribution)?;
-        statistics.set_item("dropped_samples", self.tally.dropped_samples)?;
-        if let Some((pixel, sample)) = self.tally.first_dropped {
-            statistics.set_item("first_dropped_sample", (pixel, sample))?;
-        }
-        statistics.set_item("lost_rays", lost)?;
-        Ok(statistics)
-    }
-}
-
-impl Render {
-    fn shape(&self, depth: usize) -> [usize; 3] {
-        [self.film.height as usize, self.film.width as usize, depth]
     }
 }

@@ -59,7 +59,7 @@ class _Assembly:
             self._set_camera()
             self._add_lights()
             self._set_background()
-            return self._builder.build(self._carrier.colour_matching())
+            return self._builder.build(self._carrier.colour_matching(), ["background"])
         except SceneError as fault:
             if fault.file is None:
                 raise SceneError(fault.message, file=self._scene.path, where=fault.where) from fault
@@ -83,28 +83,29 @@ class _Assembly:
         self._builder.add_mesh(owner, np.ascontiguousarray(vertices), mesh.triangles, normals)
 
     def _add_material(self, material: Material) -> int:
-        carrier, builder, hall = self._carrier, self._builder, self._hall(material)
+        return self._builder.add_material(self._matter(material), self._hall(material))
+
+    def _matter(self, material: Material) -> _core.Matter:
+        carrier, matter = self._carrier, _core.Matter
         match material.kind:
             case "dielectric":
-                index_d = _index_d(material)
                 absorption = carrier.absorption_per_mm(material.absorption_per_mm)
                 index = carrier.index(material.index)
-                return builder.add_dielectric(index, index_d, absorption, hall)
+                return matter.dielectric(index, _index_d(material), absorption)
             case "conductor":
                 n, k = carrier.metal(material.index), carrier.metal(material.extinction)
-                return builder.add_conductor(n, k, material.factor, hall)
+                return matter.conductor(n, k, material.factor)
             case "mirror":
-                return builder.add_mirror(carrier.reflectance(material.reflectance_at), hall)
+                return matter.mirror(carrier.reflectance(material.reflectance_at))
             case "diffuse":
-                return builder.add_diffuse(carrier.reflectance(material.reflectance_at), hall)
+                return matter.diffuse(carrier.reflectance(material.reflectance_at))
             case "checker":
                 first = carrier.reflectance(material.reflectance_a_at)
                 second = carrier.reflectance(material.reflectance_b_at)
-                return builder.add_checker(first, second, material.square_mm, hall)
+                return matter.checker(first, second, material.square_mm)
             case "glossy":
                 index = carrier.index(material.index)
-                base = carrier.reflectance(material.reflectance_at)
-                return builder.add_glossy(index, base, hall)
+                return matter.glossy(index, carrier.reflectance(material.reflectance_at))
 
     def _hall(self, material: Material) -> _core.HallTerms:
         terms: HallTerms = material.hall_terms()
@@ -150,20 +151,24 @@ class _Assembly:
     def _set_background(self) -> None:
         background = self._scene.background
         base = background.base if isinstance(background, StudioBackground) else background
-        match base:
-            case ConstantBackground():
-                self._builder.set_constant_background(self._radiance(base, "background"))
-            case GradientBackground():
-                zenith = self._radiance(base.zenith, "background.zenith")
-                nadir = self._radiance(base.nadir, "background.nadir")
-                self._builder.set_gradient_background(zenith, nadir)
+        surround = self._surround(base)
         if isinstance(background, StudioBackground):
             for at, soft_box in enumerate(background.soft_boxes):
                 radiance = self._radiance(soft_box, f"background.soft_boxes[{at}]")
                 half_width, half_height = _half_axes(soft_box)
-                self._builder.add_soft_box(
-                    radiance, soft_box.centre_mm, half_width, half_height, soft_box.edge_softness
+                surround.add_soft_box(
+                    radiance, soft_box.centre_mm, half_width, half_height, soft_box.edge_softness, 0
                 )
+        self._builder.set_background(surround)
+
+    def _surround(self, base: ConstantBackground | GradientBackground) -> _core.Background:
+        match base:
+            case ConstantBackground():
+                return _core.Background.constant(self._radiance(base, "background"), 0)
+            case GradientBackground():
+                zenith = self._radiance(base.zenith, "background.zenith")
+                nadir = self._radiance(base.nadir, "background.nadir")
+                return _core.Background.gradient(zenith, nadir, 0)
 
 
 def _index_d(material: Dielectric) -> float:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable
 from typing import Literal
@@ -21,7 +22,7 @@ from lamplit.scene.camera import ImageSettings
 #: Called with the samples done and to do, over all pixels, a few times a second.
 ProgressCallback = Callable[[int, int], object]
 
-METHODS = ("hall",)
+METHODS = ("path", "hall")
 
 #: Into how many bands a lane of the spectral picture is cut at most: over 380–780 nm and with 25
 #: samples or more these are 80 bands of 5 nm.
@@ -73,7 +74,7 @@ def render(
     world = assemble(scene, carrier)
     scene_hash = scene.scene_hash  # of the files as they were read, whatever becomes of them
     built = time.perf_counter()
-    outcome = _trace(scene, world, bands=bands, threads=threads, progress=progress)
+    outcome = _trace(scene, world, method=method, bands=bands, threads=threads, progress=progress)
     timings = {"build_s": built - start, "trace_s": time.perf_counter() - built}
     image = Image(
         xyz=outcome.xyz(),
@@ -102,29 +103,39 @@ def _trace(
     scene: Scene,
     world: _core.Scene,
     *,
+    method: str,
     bands: int,
     threads: int | None,
     progress: ProgressCallback | None,
 ) -> _core.Render:
-    image, hall = scene.image, scene.hall
+    image = scene.image
     try:
         return world.render(
             image.width,
             image.height,
             image.samples,
-            sampling=image.sampling,
+            _method(scene, method),
+            sampling=image.sampling if method == "hall" else "sobol",
             filter=image.filter,
             seed=image.seed,
-            max_depth=hall.max_depth,
-            contribution_limit=hall.contribution_limit,
-            dispersion_groups=hall.dispersion_groups,
-            shadows=hall.shadows,
             bands_per_lane=bands,
             threads=threads or 0,
             progress=progress,
         )
     except ValueError as fault:
         raise SceneError(str(fault), file=scene.path) from fault
+
+
+def _method(scene: Scene, method: str) -> _core.HallMethod | _core.PathMethod:
+    if method == "path":
+        return _core.PathMethod(max_depth=64, split_depth=int(os.environ.get("SPLIT","4")), roulette_below=float(os.environ.get("ROUL","0.05")))
+    hall = scene.hall
+    return _core.HallMethod(
+        max_depth=hall.max_depth,
+        contribution_limit=hall.contribution_limit,
+        dispersion_groups=hall.dispersion_groups,
+        shadows=hall.shadows,
+    )
 
 
 def _with_samples(scene: Scene, samples: int) -> Scene:

@@ -84,11 +84,15 @@ pub struct Film {
     pub band_sums: Vec<f64>,
     /// How many samples each part of the lanes has, pixel by pixel.
     pub band_visits: Vec<u32>,
+    /// How many light groups have sums of their own; 0 where the total is all there is.
+    pub layers: usize,
+    /// The sums of each light group, pixel by pixel, [`Film::layers`] for each.
+    pub layer_sums: Vec<PixelSums>,
 }
 
 impl Film {
     /// An empty film.
-    pub fn new(width: u32, height: u32, bands_per_lane: usize) -> Self {
+    pub fn new(width: u32, height: u32, bands_per_lane: usize, layers: usize) -> Self {
         let count = width as usize * height as usize;
         Self {
             width,
@@ -97,6 +101,8 @@ impl Film {
             bands_per_lane,
             band_sums: vec![0.0; count * bands_per_lane * LANES],
             band_visits: vec![0; count * bands_per_lane],
+            layers,
+            layer_sums: vec![PixelSums::default(); count * layers],
         }
     }
 
@@ -153,7 +159,7 @@ mod tests {
 
     #[test]
     fn each_phase_falls_into_the_band_of_its_wavelengths() {
-        let mut film = Film::new(1, 1, 5);
+        let mut film = Film::new(1, 1, 5, 0);
         let phases = 25;
         for phase in 0..phases {
             let wavelength = |lane: usize| (lane * phases + phase) as f64;
@@ -166,7 +172,7 @@ mod tests {
 
     #[test]
     fn a_band_without_a_sample_takes_the_mean_of_its_lane() {
-        let mut film = Film::new(1, 1, 2);
+        let mut film = Film::new(1, 1, 2, 0);
         let mut bands = BandSums { sums: &mut film.band_sums, visits: &mut film.band_visits };
         bands.add(SampledSpectrum::splat(3.0), SampledWavelengths { phase: 0 }, 2);
         assert_eq!(film.band_means(), vec![3.0; 2 * LANES]);

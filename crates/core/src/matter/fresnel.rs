@@ -25,40 +25,79 @@ fn refracted_cosine(cos_i: f64, eta: f64) -> Option<f64> {
     (sin2_t < 1.0).then(|| (1.0 - sin2_t).sqrt())
 }
 
+/// The reflectances of an interface between dielectrics for s- and p-polarised light.
+///
+/// `cos_i` is the cosine on the incident side, `eta` = n₂/n₁. Both are 1 beyond the critical angle.
+/// Source: Born & Wolf, *Principles of Optics*, §1.5.2.
+pub fn polarised_dielectric_reflectances(cos_i: f64, eta: f64) -> [f64; 2] {
+    let cos_i = cos_i.clamp(0.0, 1.0);
+    let Some(cos_t) = refracted_cosine(cos_i, eta) else {
+        return [1.0, 1.0];
+    };
+    let r_s = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
+    let r_p = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
+    [r_s * r_s, r_p * r_p]
+}
+
 /// The unpolarised reflectance F of an interface between dielectrics, `½(r_s² + r_p²)`.
 ///
 /// `cos_i` is the cosine on the incident side, `eta` = n₂/n₁. It is 1 beyond the critical angle
-/// and exactly 0 for `eta` = 1. Source: Born & Wolf, *Principles of Optics*, §1.5.2.
+/// and exactly 0 for `eta` = 1.
 pub fn dielectric_reflectance(cos_i: f64, eta: f64) -> f64 {
     if eta == 1.0 {
         return 0.0;
     }
-    let cos_i = cos_i.clamp(0.0, 1.0);
-    let Some(cos_t) = refracted_cosine(cos_i, eta) else {
-        return 1.0;
-    };
-    let r_s = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
-    let r_p = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
-    0.5 * (r_s * r_s + r_p * r_p)
+    let [s, p] = polarised_dielectric_reflectances(cos_i, eta);
+    0.5 * (s + p)
 }
 
-/// The unpolarised reflectance of a conductor with the complex index n + ik relative to the medium
+/// The reflectance of an interface for light of equal radiance from everywhere, 2∫ F(µ) µ dµ.
+///
+/// `eta` = n₂/n₁, the light coming from side 1. Inside the denser medium it follows from the
+/// balance n₁²(1 − F₁₂) = n₂²(1 − F₂₁). Source: J. Walsh, 1926, in the form of W. Egan and
+/// T. Hilgeman, *Optical Properties of Inhomogeneous Materials*, 1979.
+pub fn diffuse_dielectric_reflectance(eta: f64) -> f64 {
+    if eta < 1.0 {
+        return 1.0 - (1.0 - diffuse_dielectric_reflectance(1.0 / eta)) * eta * eta;
+    }
+    // Below this contrast the terms cancel to less than the result.
+    if eta - 1.0 < 1e-9 {
+        return 0.0;
+    }
+    let n = eta;
+    let n2 = n * n;
+    let (n4, above, below) = (n2 * n2, n2 + 1.0, n2 - 1.0);
+    0.5 + (n - 1.0) * (3.0 * n + 1.0) / (6.0 * (n + 1.0).powi(2))
+        + n2 * below * below / above.powi(3) * ((n - 1.0) / (n + 1.0)).ln()
+        - 2.0 * n * n2 * (n2 + 2.0 * n - 1.0) / (above * (n4 - 1.0))
+        + 8.0 * n4 * (n4 + 1.0) / (above * (n4 - 1.0).powi(2)) * n.ln()
+}
+
+/// The reflectances of a conductor for s- and p-polarised light; n + ik is relative to the medium
 /// the light comes from.
 ///
 /// Source: Born & Wolf, *Principles of Optics*, §14.2, in the form with
 /// a² + b² = |√((n + ik)² − sin²θ)|².
-pub fn conductor_reflectance(cos_i: f64, n: f64, k: f64) -> f64 {
+pub fn polarised_conductor_reflectances(cos_i: f64, n: f64, k: f64) -> [f64; 2] {
     let cos_i = cos_i.clamp(0.0, 1.0);
     let cos2 = cos_i * cos_i;
     let sin2 = 1.0 - cos2;
     let d = n * n - k * k - sin2;
-    let a2_b2 = d.hypot(2.0 * n * k);
+    // Not `hypot`, which is slow: no index comes near the ends of the range.
+    let twice_nk = 2.0 * n * k;
+    let a2_b2 = (d * d + twice_nk * twice_nk).sqrt();
     let a = (0.5 * (a2_b2 + d)).max(0.0).sqrt();
     let r_s = (a2_b2 + cos2 - 2.0 * a * cos_i) / (a2_b2 + cos2 + 2.0 * a * cos_i);
     let far = cos2 * a2_b2 + sin2 * sin2;
     let near = 2.0 * a * cos_i * sin2;
-    let r_p = r_s * (far - near) / (far + near);
-    0.5 * (r_s + r_p)
+    [r_s, r_s * (far - near) / (far + near)]
+}
+
+/// The unpolarised reflectance of a conductor with the complex index n + ik relative to the medium
+/// the light comes from.
+pub fn conductor_reflectance(cos_i: f64, n: f64, k: f64) -> f64 {
+    let [s, p] = polarised_conductor_reflectances(cos_i, n, k);
+    0.5 * (s + p)
 }
 
 #[cfg(test)]
@@ -99,6 +138,22 @@ mod tests {
         let (n, k): (f64, f64) = (1.015, 6.627);
         let exact = ((n - 1.0).powi(2) + k * k) / ((n + 1.0).powi(2) + k * k);
         assert!((conductor_reflectance(1.0, n, k) - exact).abs() < 1e-15);
+    }
+
+    #[test]
+    fn diffuse_reflectance_is_the_mean_over_the_hemisphere() {
+        // Published: 0.0918 outside and 0.596 inside for n = 1.5 (Judd, J. Res. NBS 29, 1942).
+        assert!((diffuse_dielectric_reflectance(1.5) - 0.0918).abs() < 5e-5);
+        assert!((diffuse_dielectric_reflectance(1.0 / 1.5) - 0.596).abs() < 5e-4);
+        assert_eq!(diffuse_dielectric_reflectance(1.0), 0.0);
+        for eta in [1.0 / 2.4, 1.0 / 1.5, 0.9, 1.001, 1.1, 1.5, 2.4] {
+            let steps = 100_000;
+            let sum: f64 = (0..steps)
+                .map(|i| (f64::from(i) + 0.5) / f64::from(steps))
+                .map(|mu| 2.0 * mu * dielectric_reflectance(mu, eta) / f64::from(steps))
+                .sum();
+            assert!((diffuse_dielectric_reflectance(eta) - sum).abs() < 1e-6, "{eta}");
+        }
     }
 
     proptest! {

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0 OR MIT
 //! [`Material`]: the optics of a surface or body, and its terms in Hall's shading model.
 
-use super::fresnel::{conductor_reflectance, dielectric_reflectance};
+use super::albedo::AlbedoTable;
+use super::bsdf::{Bsdf, Diffuse, Facet, Glossy, LacqueredMetal, Reflector, Transmitter};
+use super::finish::Finish;
+use super::fresnel::dielectric_reflectance;
+use super::lacquer::Lacquer;
 use crate::math::DVec3;
 use crate::spectrum::{SampledSpectrum, SampledWavelengths, SpectralTable, LANES};
 
@@ -14,6 +18,17 @@ pub struct Dielectric {
     pub index_d: f64,
     /// The Napierian absorption coefficient in mm⁻¹.
     pub absorption: SpectralTable,
+    /// What makes it turbid; a clear body has none.
+    pub scattering: Option<Scattering>,
+}
+
+/// Particles spread evenly in a body, which scatter by [`super::henyey_greenstein`].
+#[derive(Clone, Debug)]
+pub struct Scattering {
+    /// The scattering coefficient in mm⁻¹.
+    pub coefficient: SpectralTable,
+    /// g, the mean cosine of the deflection, in (−1, 1).
+    pub anisotropy: f64,
 }
 
 impl Dielectric {
@@ -59,16 +74,18 @@ impl Checker {
 /// What a surface does with light.
 #[derive(Clone, Debug)]
 pub enum Optics {
-    /// A transparent body with a smooth surface.
+    /// A transparent body.
     Dielectric(Dielectric),
-    /// A metal with n and k; `factor` stands for a lacquer's loss.
+    /// A metal with n and k, bare or lacquered.
     Conductor {
         /// n(λ).
         n: SpectralTable,
         /// k(λ).
         k: SpectralTable,
-        /// What the bare metal's reflectance is multiplied with.
+        /// What the metal's reflectance is multiplied with.
         factor: f64,
+        /// A coat that follows the metal's surface.
+        lacquer: Option<Lacquer>,
     },
     /// A mirror of measured reflectance.
     Mirror(SpectralTable),
@@ -76,7 +93,14 @@ pub enum Optics {
     Diffuse(SpectralTable),
     /// A matt surface of two reflectances.
     Checker(Checker),
-    /// A smooth dielectric coat over an opaque matt base.
+    /// A thin matt sheet that light passes: it walks on in the medium that it came from.
+    Transmitter {
+        /// The diffuse reflectance of either side.
+        reflectance: SpectralTable,
+        /// The diffuse transmittance.
+        transmittance: SpectralTable,
+    },
+    /// A dielectric coat over an opaque matt base.
     Glossy {
         /// The coat's index n(λ).
         index: SpectralTable,
@@ -109,6 +133,8 @@ pub struct HallTerms {
 pub struct Material {
     /// The physics.
     pub optics: Optics,
+    /// How rough the surface is, and where. Hall's method takes all surfaces as smooth.
+    pub finish: Finish,
     /// Its terms in the founding method.
     pub hall: HallTerms,
 }
@@ -132,6 +158,7 @@ impl Material {
             Optics::Diffuse(reflectance) => Some(reflectance.at(wavelengths)),
             Optics::Checker(checker) => Some(checker.at(point).at(wavelengths)),
             Optics::Glossy { base, .. } => Some(base.at(wavelengths)),
+            Optics::Transmitter { reflectance, .. } => Some(reflectance.at(wavelengths)),
             Optics::Dielectric(_) | Optics::Conductor { .. } | Optics::Mirror(_) => None,
         }
     }
@@ -145,17 +172,82 @@ impl Material {
         wavelengths: SampledWavelengths,
     ) -> Option<SampledSpectrum> {
         match &self.optics {
-            Optics::Conductor { n, k, factor } => {
-                let (n, k) = (n.at(wavelengths) / medium_index, k.at(wavelengths) / medium_index);
-                Some(n.zip(k, |n, k| factor * conductor_reflectance(cos_i, n, k)))
+            Optics::Conductor { n, k, factor, lacquer } => {
+                let metal = (n, k, *factor);
+                let facet = metal_facet(metal, lacquer.as_ref(), medium_index, wavelengths);
+                Some(facet.reflectance(cos_i))
             }
             Optics::Mirror(reflectance) => Some(reflectance.at(wavelengths)),
             Optics::Glossy { index, .. } => {
                 let eta = index.at(wavelengths) / medium_index;
                 Some(eta.map(|eta| dielectric_reflectance(cos_i, eta)))
             }
-            Optics::Dielectric(_) | Optics::Diffuse(_) | Optics::Checker(_) => None,
+            Optics::Dielectric(_)
+            | Optics::Diffuse(_)
+            | Optics::Checker(_)
+            | Optics::Transmitter { .. } => None,
         }
+    }
+
+    /// The GGX width α of a face by its outward geometric normal; 0 where it is smooth.
+    pub fn alpha_at(&self, normal: DVec3) -> f64 {
+        self.finish.alpha_at(normal)
+    }
+
+    /// The roughness of a face by its outward geometric normal; none where it is smooth.
+    pub fn roughness_at(&self, normal: DVec3) -> Option<&AlbedoTable> {
+        self.finish.table_at(normal)
+    }
+
+    /// What the surface does with light at a point of the world, met from a medium of index
+    /// `medium_index`. `normal` is the outward geometric one.
+    ///
+    /// A transparent body is taken as met from outside; [`Bsdf::interface`] knows both sides.
+    pub fn bsdf(
+        &self,
+        position: DVec3,
+        normal: DVec3,
+        medium_index: SampledSpectrum,
+        wavelengths: SampledWavelengths,
+    ) -> Bsdf<'_> {
+        let roughness = self.roughness_at(normal);
+        let reflector = |facet| Bsdf::Reflector(Reflector::new(facet, roughness));
+        match &self.optics {
+            Optics::Dielectric(body) => {
+                Bsdf::interface(body.index.at(wavelengths) / medium_index, roughness)
+            }
+            Optics::Conductor { n, k, factor, lacquer } => {
+                reflector(metal_facet((n, k, *factor), lacquer.as_ref(), medium_index, wavelengths))
+            }
+            Optics::Mirror(reflectance) => reflector(Facet::Measured(reflectance.at(wavelengths))),
+            Optics::Diffuse(reflectance) => {
+                Bsdf::Diffuse(Diffuse::new(reflectance.at(wavelengths)))
+            }
+            Optics::Checker(checker) => {
+                Bsdf::Diffuse(Diffuse::new(checker.at(position).at(wavelengths)))
+            }
+            Optics::Transmitter { reflectance, transmittance } => Bsdf::Transmitter(
+                Transmitter::new(reflectance.at(wavelengths), transmittance.at(wavelengths)),
+            ),
+            Optics::Glossy { index, base } => {
+                let eta = index.at(wavelengths) / medium_index;
+                Bsdf::Glossy(Glossy::new(eta, base.at(wavelengths), roughness))
+            }
+        }
+    }
+}
+
+/// The facets of a metal of n, k and factor, seen from a medium.
+fn metal_facet(
+    (n, k, factor): (&SpectralTable, &SpectralTable, f64),
+    lacquer: Option<&Lacquer>,
+    medium_index: SampledSpectrum,
+    wavelengths: SampledWavelengths,
+) -> Facet {
+    let (n, k) = (n.at(wavelengths), k.at(wavelengths));
+    match lacquer.map(|lacquer| lacquer.at(wavelengths)) {
+        None => Facet::Metal { n: n / medium_index, k: k / medium_index, factor },
+        Some(lacquer) => Facet::Lacquered(LacqueredMetal { lacquer, medium_index, n, k, factor }),
     }
 }
 

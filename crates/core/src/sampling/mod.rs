@@ -13,4 +13,4 @@ pub use choice::{pick, Choice};
 pub use filter::PixelFilter;
 pub use sequence::{PixelSampler, PixelSequence, SequenceError};
 pub use shapes::{uniform_cone, uniform_disc, uniform_triangle};
-pub use warp::uniform_sphere;
+pub use warp::{cosine_hemisphere, uniform_sphere};

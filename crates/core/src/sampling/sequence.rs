@@ -30,7 +30,7 @@ pub enum SequenceError {
 }
 
 impl PixelSequence {
-    /// The most samples per pixel (the Sobol points used here are 2¹⁶).
+    /// How many samples have points of one Sobol sequence; those after them take another one's.
     pub const MOST_SAMPLES: u32 = 1 << 16;
 
     /// The n×n grid with `samples` points.
@@ -86,6 +86,11 @@ impl PixelSampler {
         SampledWavelengths { phase: strided(self.sample % phases, phases, offset) as usize }
     }
 
+    /// The place of this sample on the camera's lens, in the unit square.
+    pub fn lens(&self) -> DVec2 {
+        DVec2::new(self.sobol(2), self.sobol(3))
+    }
+
     /// The next two numbers, uniform in the unit square.
     pub fn next_2d(&mut self) -> DVec2 {
         let first = self.dimension;
@@ -93,11 +98,33 @@ impl PixelSampler {
         DVec2::new(self.sobol(first), self.sobol(first + 1))
     }
 
+    /// The next four numbers, uniform in the unit hypercube and well spread in all of it.
+    pub fn next_4d(&mut self) -> [f64; 4] {
+        let set = self.dimension.div_ceil(4);
+        self.dimension = 4 * (set + 1);
+        let (index, seed) = self.point(set / sobol_burley::NUM_DIMENSION_SETS_4D);
+        let last = sobol_burley::NUM_DIMENSION_SETS_4D;
+        sobol_burley::sample_4d(index, set % last, seed).map(f64::from)
+    }
+
+    /// The numbers of another branch of this sample's tree of rays: independent of this one's.
+    #[must_use]
+    pub fn fork(&self, branch: u32) -> Self {
+        let salt = u64::from(self.dimension) << 32 | u64::from(branch + 1);
+        Self { key: hash(self.key ^ hash(salt)), ..self.clone() }
+    }
+
     fn sobol(&self, dimension: u32) -> f64 {
         let last = sobol_burley::NUM_DIMENSIONS;
-        let seed = (self.key as u32).wrapping_add(dimension / last);
-        let index = self.sample % PixelSequence::MOST_SAMPLES;
+        let (index, seed) = self.point(dimension / last);
         f64::from(sobol_burley::sample(index, dimension % last, seed))
+    }
+
+    /// The index into the sequence and the scramble's seed, for the `round`th use of all dimensions.
+    fn point(&self, round: u32) -> (u32, u32) {
+        let most = PixelSequence::MOST_SAMPLES;
+        let turn = (self.sample / most).wrapping_mul(0x9E37_79B9);
+        (self.sample % most, (self.key as u32).wrapping_add(round).wrapping_add(turn))
     }
 }
 

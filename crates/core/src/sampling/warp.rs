@@ -13,6 +13,15 @@ pub fn uniform_sphere(u: DVec2) -> DVec3 {
     DVec3::new(radius * cos, radius * sin, z)
 }
 
+/// Return a direction above the plane z = 0 with the density z/π per sr, for a uniform `u`.
+///
+/// Malley's method: a point of the unit disc, uniform by area, lifted to the hemisphere.
+pub fn cosine_hemisphere(u: DVec2) -> DVec3 {
+    let radius = u.x.sqrt();
+    let (sin, cos) = (TAU * u.y).sin_cos();
+    DVec3::new(radius * cos, radius * sin, (1.0 - u.x).max(0.0).sqrt())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

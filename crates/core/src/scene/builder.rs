@@ -13,7 +13,7 @@ use crate::geometry::{Primitive, SampledSurface, Triangles, TrianglesError};
 use crate::light::{Background, Emitter, IntensityError, Light};
 use crate::math::DVec3;
 use crate::matter::Material;
-use crate::spectrum::SpectralTable;
+use crate::spectrum::{SampledSpectrum, SpectralTable, LANES};
 
 /// Why a scene cannot be built.
 #[derive(Debug, Error)]
@@ -69,6 +69,8 @@ pub struct SceneBuilder {
     /// One normal per vertex; zero where the mesh is flat.
     normals: Vec<[f32; 3]>,
     emissions: Vec<(BodyId, Emission)>,
+    /// How many light groups there are.
+    pub groups: usize,
 }
 
 impl SceneBuilder {
@@ -172,6 +174,8 @@ impl SceneBuilder {
             ambient,
             emitters: Emitters::new(emitters, &colour_matching[1]),
             background,
+            groups: self.groups,
+            visibility: visibility(&colour_matching),
             colour_matching,
         })
     }
@@ -229,4 +233,15 @@ impl SceneBuilder {
         }
         boxes
     }
+}
+
+/// How much each lane matters to the eye: X + Y + Z of the lane, and a hundredth of their mean so
+/// that no lane is nothing; together 1 in each phase.
+fn visibility(colour_matching: &[SpectralTable; 3]) -> SpectralTable {
+    SpectralTable::combine(colour_matching, |[x, y, z]| {
+        let seen = x + y + z;
+        let sum = seen.dot(SampledSpectrum::ONE).max(f64::MIN_POSITIVE);
+        let least = 0.01 * sum / LANES as f64;
+        seen.map(|value| (value + least) / (1.01 * sum))
+    })
 }

@@ -49,8 +49,12 @@ pub struct Scene {
     pub emitters: Emitters,
     /// What rays see that leave the scene.
     pub background: Background,
+    /// How many light groups there are.
+    pub groups: usize,
     /// The tables whose inner products with a spectral radiance are X, Y and Z in cd/m².
     pub colour_matching: [SpectralTable; 3],
+    /// How much each lane matters to the eye: never nothing, and together 1 in each phase.
+    pub visibility: SpectralTable,
 }
 
 impl Scene {
@@ -127,6 +131,27 @@ impl Scene {
     /// The material of a body.
     pub fn material_of(&self, body: BodyId) -> &Material {
         &self.materials[self.bodies[body as usize].material]
+    }
+
+    /// The share of the light that a surface, met from `interior`, sends back or on when it arrives
+    /// against wi; 1 for a boundary of transparent media.
+    pub fn albedo(
+        &self,
+        hit: &SurfaceHit,
+        wi: DVec3,
+        interior: &Interior,
+        wavelengths: SampledWavelengths,
+    ) -> SampledSpectrum {
+        let material = self.material_of(hit.body);
+        if material.dielectric().is_some() {
+            return SampledSpectrum::ONE;
+        }
+        let around = self.medium(interior).map(|medium| medium.index.at(wavelengths));
+        let index = around.unwrap_or(SampledSpectrum::ONE);
+        let bsdf = material.bsdf(hit.point.position, hit.point.normal, index, wavelengths);
+        let cos_i = hit.shading_normal.dot(wi).abs();
+        let local = DVec3::new((1.0 - cos_i * cos_i).max(0.0).sqrt(), 0.0, cos_i);
+        bsdf.albedo(local) + bsdf.mirror(cos_i).unwrap_or(SampledSpectrum::ZERO)
     }
 
     /// The transparent matter at a place: `None` is air.

@@ -45,6 +45,11 @@ impl SampledSpectrum {
         self.0.iter().copied().fold(f64::NEG_INFINITY, f64::max)
     }
 
+    /// Whether all lanes have the same value.
+    pub fn is_even(self) -> bool {
+        self.0.iter().all(|value| *value == self.0[0])
+    }
+
     /// The inner product Σⱼ aⱼ·bⱼ.
     pub fn dot(self, other: Self) -> f64 {
         self.0.iter().zip(other.0).map(|(a, b)| a * b).sum()
@@ -138,6 +143,12 @@ impl Mul for SampledSpectrum {
 impl MulAssign for SampledSpectrum {
     fn mul_assign(&mut self, other: Self) {
         *self = *self * other;
+    }
+}
+
+impl MulAssign<f64> for SampledSpectrum {
+    fn mul_assign(&mut self, factor: f64) {
+        *self = *self * factor;
     }
 }
 

@@ -57,6 +57,14 @@ impl SpectralTable {
         self.rows[wavelengths.phase]
     }
 
+    /// The table of `f` of three tables' lanes, phase by phase.
+    #[must_use]
+    pub fn combine(tables: &[Self; 3], f: impl Fn([SampledSpectrum; 3]) -> SampledSpectrum) -> Self {
+        let [a, b, c] = tables;
+        let rows = a.rows.iter().zip(&b.rows).zip(&c.rows);
+        Self { rows: rows.map(|((a, b), c)| f([*a, *b, *c])).collect() }
+    }
+
     /// How many phases the table has.
     pub fn phases(&self) -> usize {
         self.rows.len()

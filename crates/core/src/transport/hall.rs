@@ -18,9 +18,10 @@ use std::ops::Range;
 use crate::math::{DVec2, DVec3, Ray};
 use crate::matter::{dielectric_reflectance, reflect, refract, Dielectric, HallTerms, Material};
 use crate::sampling::PixelSampler;
-use crate::scene::{Face, Interior, LostRay, Scene, SurfaceHit};
+use crate::scene::{Face, Interior, LostRay, Scene};
 use crate::spectrum::{SampledSpectrum, SampledWavelengths, LANES};
 
+use super::meeting::Meeting;
 use super::shadow::transmittance_towards;
 use super::tally::Tally;
 
@@ -60,16 +61,6 @@ struct Branch {
     /// The lanes that it carries.
     lanes: Range<usize>,
     depth: u32,
-}
-
-/// A surface as a branch meets it.
-struct Meeting {
-    hit: SurfaceHit,
-    /// The direction back along the branch.
-    wi: DVec3,
-    /// The shading normal on the branch's side.
-    normal: DVec3,
-    cos_i: f64,
 }
 
 impl<'a> HallWalk<'a> {
@@ -317,42 +308,5 @@ impl<'a> HallWalk<'a> {
 
     fn index(&self, medium: Option<&Dielectric>) -> SampledSpectrum {
         medium.map_or(SampledSpectrum::ONE, |body| body.index.at(self.wavelengths))
-    }
-}
-
-impl Meeting {
-    fn new(hit: SurfaceHit, direction: DVec3) -> Self {
-        let wi = -direction;
-        let side = 1.0_f64.copysign(hit.point.normal.dot(wi));
-        let shading = hit.shading_normal * side;
-        // Seen so flatly that the interpolated normal turns away, only the true one makes sense.
-        let normal = if shading.dot(wi) > 0.0 { shading } else { hit.point.normal * side };
-        Self { hit, wi, normal, cos_i: normal.dot(wi).clamp(0.0, 1.0) }
-    }
-
-    /// 1 where the branch comes from the side that the surface's own normal points to, else −1.
-    fn side(&self) -> f64 {
-        1.0_f64.copysign(self.hit.point.normal.dot(self.wi))
-    }
-
-    /// Keep a mirrored direction on the branch's side of the true surface.
-    fn on_near_side(&self, wo: DVec3) -> DVec3 {
-        let true_normal = self.hit.point.normal * self.side();
-        if wo.dot(true_normal) > 0.0 {
-            wo
-        } else {
-            reflect(self.wi, true_normal)
-        }
-    }
-
-    /// Keep a refracted direction on the far side of the true surface.
-    fn on_far_side(&self, wo: DVec3) -> DVec3 {
-        let true_normal = self.hit.point.normal * self.side();
-        let height = wo.dot(true_normal);
-        if height < 0.0 {
-            wo
-        } else {
-            (wo - true_normal * (height + 1e-6)).normalize()
-        }
     }
 }

@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0 OR MIT
 //! How light finds its way from the scene to the eye.
 
+mod gathered;
 mod hall;
+mod ledger;
+mod meeting;
+mod path;
 mod shadow;
 mod tally;
 
+pub use gathered::Gathered;
 pub use hall::{HallSettings, HallWalk};
+pub use ledger::{Balance, Ledger};
+pub use path::{PathSettings, PathWalk};
 pub use tally::Tally;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 OR MIT
 //! [`Tally`]: what happened to the rays, counted.
 
+use super::ledger::Ledger;
 use crate::scene::{BodyId, LostRay};
 
 /// Counts of rays and of what was left out. Sums of integers, so that their order is free.
@@ -20,12 +21,14 @@ pub struct Tally {
     pub first_dropped: Option<(u64, u32)>,
     /// Lost rays per body: left without entering, entered twice, ended inside, too many bodies.
     pub lost: Vec<[u64; 4]>,
+    /// Where the weight of the walks went; kept by path transport.
+    pub ledger: Ledger,
 }
 
 impl Tally {
     /// Nothing counted yet, for a scene of `bodies` bodies.
     pub fn new(bodies: usize) -> Self {
-        Self { lost: vec![[0; 4]; bodies], ..Self::default() }
+        Self { lost: vec![[0; 4]; bodies], ledger: Ledger::new(bodies), ..Self::default() }
     }
 
     /// Count a lost ray.
@@ -53,6 +56,7 @@ impl Tally {
             (Some(a), Some(b)) => Some(a.min(b)),
             (a, b) => a.or(b),
         };
+        self.ledger.add(&other.ledger);
         for (mine, theirs) in self.lost.iter_mut().zip(&other.lost) {
             for (sum, count) in mine.iter_mut().zip(theirs) {
                 *sum += count;

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0 OR MIT
+//! [`Pass`]: some samples of every pixel, over all threads.
+
+use std::ops::Range;
+use std::sync::atomic::Ordering;
+
+use rayon::prelude::*;
+
+use super::allocation::Allocation;
+use super::settings::{Method, RenderSettings};
+use super::Progress;
+use crate::film::{BandSums, Film, PixelSums};
+use crate::math::DVec2;
+use crate::scene::{Interior, Scene};
+use crate::transport::{Gathered, HallWalk, PathWalk, Tally};
+
+/// Some samples of every pixel.
+pub(super) struct Pass<'a> {
+    pub scene: &'a Scene,
+    pub settings: &'a RenderSettings,
+    /// The bodies that the eye is in.
+    pub interior: Interior,
+    pub samples: Range<u32>,
+    /// From which sample on each pixel takes only as many as it is allotted.
+    pub limit: Option<(u32, &'a Allocation)>,
+    pub progress: &'a Progress,
+}
+
+/// The sums of one pixel.
+struct Exposure<'a> {
+    pixel: &'a mut PixelSums,
+    bands: BandSums<'a>,
+    layers: &'a mut [PixelSums],
+}
+
+impl Pass<'_> {
+    /// Add the samples to the film.
+    pub fn run(&self, film: &mut Film) -> Tally {
+        let tile = self.settings.tile.max(1);
+        let (bands, per_lane, layers) = (film.bands(), film.bands_per_lane, film.layers);
+        // A film without spectra or layers lends every tile empty slices of these.
+        let count = film.pixels.len().div_ceil(tile);
+        let sums = split(&mut film.band_sums, tile * bands, count);
+        let visits = split(&mut film.band_visits, tile * per_lane, count);
+        let layer_sums = split(&mut film.layer_sums, tile * layers, count);
+        film.pixels
+            .par_chunks_mut(tile)
+            .zip(sums)
+            .zip(visits)
+            .zip(layer_sums)
+            .enumerate()
+            .map(|(at, (((pixels, sums), visits), layer_sums))| {
+                let mut tally = Tally::new(self.scene.bodies.len());
+                let mut gathered = Gathered::new(layers);
+                for (i, pixel) in pixels.iter_mut().enumerate() {
+                    if self.progress.is_cancelled() {
+                        break;
+                    }
+                    let bands = BandSums {
+                        sums: &mut sums[i * bands..(i + 1) * bands],
+                        visits: &mut visits[i * per_lane..(i + 1) * per_lane],
+                    };
+                    let layers = &mut layer_sums[i * layers..(i + 1) * layers];
+                    let exposure = Exposure { pixel, bands, layers };
+                    self.expose(at * tile + i, exposure, &mut gathered, &mut tally);
+                }
+                tally
+            })
+            .reduce(
+                || Tally::new(self.scene.bodies.len()),
+                |mut a, b| {
+                    a.add(&b);
+                    a
+                },
+            )
+    }
+
+    /// The samples that this pass takes of a pixel.
+    fn samples_of(&self, pixel: usize) -> Range<u32> {
+        let Range { start, end } = self.samples;
+        let limit = self.limit.map(|(first, allocation)| first + allocation.of(pixel));
+        start..limit.unwrap_or(end).clamp(start, end)
+    }
+
+    fn expose(
+        &self,
+        number: usize,
+        exposure: Exposure<'_>,
+        gathered: &mut Gathered,
+        tally: &mut Tally,
+    ) {
+        let Exposure { pixel, mut bands, layers } = exposure;
+        let samples = self.samples_of(number);
+        let phases = self.scene.phases();
+        let done = u64::from(samples.end - samples.start);
+        for sample in samples {
+            let wavelengths = self.take(number, sample, gathered, tally);
+            let layers_are_sound = gathered.layers.iter().flatten().all(|value| value.is_finite());
+            if !(gathered.radiance.is_radiance() && layers_are_sound) {
+                tally.drop_sample(number as u64, sample);
+                continue;
+            }
+            pixel.add(self.scene.tristimulus(gathered.radiance, wavelengths));
+            for (sums, xyz) in layers.iter_mut().zip(&gathered.layers) {
+                sums.add(*xyz);
+            }
+            if !bands.visits.is_empty() {
+                bands.add(gathered.radiance, wavelengths, phases);
+            }
+        }
+        self.progress.done.fetch_add(done, Ordering::Relaxed);
+    }
+
+    /// Take one sample of a pixel and return its wavelengths.
+    fn take(
+        &self,
+        number: usize,
+        sample: u32,
+        gathered: &mut Gathered,
+        tally: &mut Tally,
+    ) -> crate::spectrum::SampledWavelengths {
+        let (scene, settings) = (self.scene, self.settings);
+        let sampler = settings.sequence.sampler(settings.seed, number as u64, sample);
+        let wavelengths = sampler.wavelengths(scene.phases());
+        let width = settings.width as usize;
+        let centre = DVec2::new((number % width) as f64 + 0.5, (number / width) as f64 + 0.5);
+        let place = centre + settings.filter.offset(sampler.pixel());
+        let ray = scene.camera.ray(place, sampler.lens(), settings.width, settings.height);
+        let start = (ray, self.interior);
+        gathered.clear();
+        match settings.method {
+            Method::Hall(hall) => {
+                gathered.radiance =
+                    HallWalk::radiance(scene, hall, wavelengths, sampler, tally, start);
+            }
+            Method::Path(path) => {
+                PathWalk::gather(scene, path, wavelengths, sampler, tally, gathered, start);
+            }
+        }
+        wavelengths
+    }
+}
+
+/// Cut `values` into `count` slices of `size`, empty ones where `size` is 0.
+fn split<T: Send>(values: &mut [T], size: usize, count: usize) -> Vec<&mut [T]> {
+    if size == 0 {
+        return (0..count).map(|_| <&mut [T]>::default()).collect();
+    }
+    values.chunks_mut(size).collect()
+}

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0 OR MIT
+//! [`Gathered`]: the light that one sample's walk brings to the eye.
+
+use crate::scene::Scene;
+use crate::spectrum::{SampledSpectrum, SampledWavelengths};
+
+/// The light that one sample's walk brings to the eye.
+#[derive(Clone, Debug)]
+pub struct Gathered {
+    /// The spectral radiance, of all light groups together.
+    pub radiance: SampledSpectrum,
+    /// X, Y and Z of each light group, in cd/m²; empty where nobody asked for layers.
+    pub layers: Vec<[f64; 3]>,
+}
+
+impl Gathered {
+    /// Nothing yet, with sums for `layers` light groups.
+    pub fn new(layers: usize) -> Self {
+        Self { radiance: SampledSpectrum::ZERO, layers: vec![[0.0; 3]; layers] }
+    }
+
+    /// Forget everything, for the next sample.
+    pub fn clear(&mut self) {
+        self.radiance = SampledSpectrum::ZERO;
+        self.layers.fill([0.0; 3]);
+    }
+
+    /// Add light of one group.
+    pub fn add(
+        &mut self,
+        scene: &Scene,
+        wavelengths: SampledWavelengths,
+        group: usize,
+        radiance: SampledSpectrum,
+    ) {
+        self.radiance += radiance;
+        if let Some(layer) = self.layers.get_mut(group) {
+            for (sum, value) in layer.iter_mut().zip(scene.tristimulus(radiance, wavelengths)) {
+                *sum += value;
+            }
+        }
+    }
+}

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0 OR MIT
+//! [`Branch`]: one way of a sample's tree of rays, on its way from the eye.
+
+use crate::math::{DVec3, Ray};
+use crate::sampling::PixelSampler;
+use crate::scene::Interior;
+use crate::spectrum::SampledSpectrum;
+
+/// One way of a sample's tree of rays.
+#[derive(Clone)]
+pub(super) struct Branch {
+    /// The segment that it follows next.
+    pub ray: Ray,
+    /// The share of the basic radiance L/n² arriving against `ray` that reaches the eye.
+    pub throughput: SampledSpectrum,
+    /// The bodies that `ray` starts in.
+    pub interior: Interior,
+    /// Its random numbers.
+    pub sampler: PixelSampler,
+    /// How many surfaces and scatterings it has behind it.
+    pub depth: u32,
+    /// How many times its tree has been split above it.
+    pub splits: u32,
+    /// How it got its direction.
+    pub came_by: CameBy,
+}
+
+/// How a branch got its direction: which other technique would have found the same light.
+#[derive(Clone, Copy)]
+pub(super) enum CameBy {
+    /// From the eye, a mirror or a smooth interface: no other technique finds this way.
+    OneWay,
+    /// By chance, at a point that also asks for the emitters it sees.
+    Scattering {
+        /// That point.
+        from: DVec3,
+        /// The density of the direction, per steradian.
+        pdf: f64,
+    },
+}
+
+/// Where a step leads: nowhere, on, or on in two ways.
+pub(super) type Ways = [Option<Branch>; 2];
+
+impl Branch {
+    /// The branch that every other comes from.
+    pub fn from_eye((ray, interior): (Ray, Interior), sampler: PixelSampler) -> Self {
+        let throughput = SampledSpectrum::ONE;
+        Self { ray, throughput, interior, sampler, depth: 0, splits: 0, came_by: CameBy::OneWay }
+    }
+
+    /// This branch after a mirror or a smooth interface.
+    #[must_use]
+    pub fn deflected(self, origin: DVec3, direction: DVec3, interior: Interior) -> Self {
+        Self { ray: Ray::endless(origin, direction), interior, came_by: CameBy::OneWay, ..self }
+    }
+}

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0 OR MIT
+//! Light at the end of a way, and light that is looked for: multiple importance sampling.
+//!
+//! A direction is drawn from one mixture: mostly as the surface answers, sometimes towards what is
+//! bright in the background. What a branch meets on its way then counts in full, through whatever
+//! glass it went. Emitters inside the scene are looked for besides, from every vertex along a
+//! straight way (next-event estimation); where both find the same light, they share it by the
+//! balance heuristic.
+
+use crate::math::{DVec3, Ray};
+use crate::scene::BodyId;
+use crate::spectrum::SampledSpectrum;
+
+use super::branch::{Branch, CameBy};
+use super::vertex::Vertex;
+use super::{Meeting, PathWalk};
+
+/// The most surfaces without effect that a straight way to an emitter may cross.
+const MOST_SURFACES: usize = 256;
+
+/// How far, relative to its distance, a point of an emitter may seem to lie behind its own surface.
+const SAME_POINT: f64 = 1e-5;
+
+impl PathWalk<'_> {
+    /// Add what the background sends against a branch that leaves the scene.
+    pub(super) fn see_background(&mut self, branch: &Branch) {
+        let (scene, wavelengths, gathered) = (self.scene, self.wavelengths, &mut *self.gathered);
+        scene.background.arriving(&branch.ray, wavelengths, |group, radiance| {
+            gathered.add(scene, wavelengths, group, branch.throughput * radiance);
+        });
+    }
+
+    /// Add what the surface at the end of a branch emits: `L_e`.
+    pub(super) fn see_emission(&mut self, branch: &Branch, meeting: &Meeting) {
+        let Some(number) = self.scene.emitters.of_body(meeting.hit.body) else {
+            return;
+        };
+        let emitters = &self.scene.emitters;
+        let emitter = emitters.get(number);
+        let normal = meeting.hit.point.normal;
+        let mut emitted = emitter.radiance(normal, meeting.wi, self.wavelengths);
+        if emitter.per_n2 {
+            let index = self.index(&branch.interior);
+            emitted = emitted / (index * index);
+        }
+        let weight = match branch.came_by {
+            CameBy::OneWay => 1.0,
+            CameBy::Scattering { from, pdf } => {
+                let position = meeting.hit.point.position;
+                let other = emitters.pdf(number, from, position, normal, -meeting.wi);
+                pdf / (pdf + other)
+            }
+        };
+        let arriving = branch.throughput * emitted * weight;
+        self.gathered.add(self.scene, self.wavelengths, emitter.group, arriving);
+    }
+
+    /// Turn a branch at a vertex: ∫ f L |cos θ| dω by one direction and one look at the emitters.
+    pub(super) fn scatter(&mut self, mut branch: Branch, vertex: &Vertex<'_>) -> Option<Branch> {
+        let lanes = self.lanes(branch.throughput);
+        self.see_emitters(&mut branch, vertex, &lanes);
+        let [technique, u, v, w] = branch.sampler.next_4d();
+        let background = &self.scene.background;
+        let drawn = if technique < background.aim_share(vertex.position) {
+            background.aim(vertex.position, [u, v, w])
+        } else {
+            vertex.sample(&lanes, [u, v, w])
+        };
+        let mut wo = drawn?;
+        let pdf = self.density(vertex, wo, &lanes);
+        branch.came_by = CameBy::Scattering { from: vertex.position, pdf };
+        branch.throughput *= vertex.answer(wo) * (1.0 / pdf);
+        if !vertex.agrees(wo) {
+            wo = vertex.put_right(wo);
+            branch.came_by = CameBy::OneWay;
+        }
+        let (origin, interior) = vertex.leave_along(wo);
+        branch.ray = Ray::endless(origin, wo);
+        branch.interior = interior;
+        (pdf > 0.0).then_some(branch)
+    }
+
+    /// The density of the directions that `scatter` draws, per steradian.
+    fn density(&self, vertex: &Vertex<'_>, wo: DVec3, lanes: &SampledSpectrum) -> f64 {
+        let background = &self.scene.background;
+        let share = background.aim_share(vertex.position);
+        let own = vertex.pdf(wo, lanes);
+        if share > 0.0 {
+            let ray = Ray::endless(vertex.position, wo);
+            (1.0 - share) * own + share * background.aim_pdf(&ray)
+        } else {
+            own
+        }
+    }
+
+    /// Add what one point of the emitters sends straight to a vertex.
+    fn see_emitters(&mut self, branch: &mut Branch, vertex: &Vertex<'_>, lanes: &SampledSpectrum) {
+        let emitters = &self.scene.emitters;
+        if emitters.is_empty() {
+            return;
+        }
+        let [u, v, w, _] = branch.sampler.next_4d();
+        let Some(seen) = emitters.sample(vertex.position, [u, v, w]) else {
+            return;
+        };
+        let emitter = emitters.get(seen.emitter);
+        let emitted = emitter.radiance(seen.normal, -seen.direction, self.wavelengths);
+        let answer = vertex.answer(seen.direction);
+        if emitted.max() <= 0.0 || answer.max() <= 0.0 || !vertex.agrees(seen.direction) {
+            return;
+        }
+        let way = self.straight_way(vertex, seen.direction, seen.distance, emitter.body);
+        let Some((transmitted, index)) = way else {
+            return;
+        };
+        let emitted = if emitter.per_n2 { emitted / (index * index) } else { emitted };
+        let other = self.density(vertex, seen.direction, lanes);
+        let arriving = branch.throughput * answer * transmitted * emitted;
+        let arriving = arriving * (1.0 / (seen.pdf + other));
+        self.gathered.add(self.scene, self.wavelengths, emitter.group, arriving);
+    }
+
+    /// The transmittance of the straight way to a point of an emitter, and the index of the medium
+    /// there; none where anything is in the way but boundaries that are none to light.
+    fn straight_way(
+        &mut self,
+        vertex: &Vertex<'_>,
+        direction: DVec3,
+        distance: f64,
+        emitter: BodyId,
+    ) -> Option<(SampledSpectrum, SampledSpectrum)> {
+        let (origin, mut interior) = vertex.leave_along(direction);
+        let mut left = distance;
+        let mut ray = Ray::endless(origin, direction);
+        let mut share = SampledSpectrum::ONE;
+        for _ in 0..MOST_SURFACES {
+            self.tally.shadow_rays += 1;
+            ray.t_max = left * (1.0 + 2.0 * SAME_POINT);
+            let place = self.scene.first_place(&ray);
+            let length = place.as_ref().map_or(left, |place| place.hit.point.t);
+            if let Some(medium) = self.scene.medium(&interior) {
+                let absorption = medium.absorption.at(self.wavelengths);
+                let extinction = medium.scattering.as_ref().map_or(absorption, |scattering| {
+                    absorption + scattering.coefficient.at(self.wavelengths)
+                });
+                share *= extinction.transmittance(length);
+            }
+            let Some(place) = place else {
+                return Some((share, self.index(&interior)));
+            };
+            let hit = place.hit;
+            if self.scene.material_of(hit.body).dielectric().is_none() {
+                let reached = hit.body == emitter && length >= left * (1.0 - SAME_POINT);
+                return reached.then(|| (share, self.index(&interior)));
+            }
+            let beyond = interior.through(place.faces(), |_, _| {});
+            if self.scene.interface(&interior, &beyond).is_some() {
+                return None;
+            }
+            interior = beyond;
+            ray.origin = hit.point.leave_along(direction);
+            left -= length;
+        }
+        None
+    }
+}

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0 OR MIT
+//! Unbiased spectral path transport: the rendering equation, walked from the eye.
+//!
+//! Per lane, the basic radiance L/n² that arrives at the eye along a ray of length s is
+//!
+//!   L = T(s)·[ `L_e` + ∫ f L |cos θ| dω ] + ∫₀ˢ T(t)·`σ_s`·∫ p L dω dt
+//!
+//! with T(t) the transmittance of the way, exact; `L_e` what the surface at its end (or the
+//! background) sends out; f the surface's answer, and p the phase function of a scattering body.
+//! A [`Branch`] carries the product of all factors so far; each step of [`PathWalk::follow`] is one
+//! term. Integrals are sampled; the two ways on at a smooth surface are a sum, and are both followed
+//! while that matters to the pixel.
+//!
+//! Source: J. Kajiya, "The Rendering Equation", SIGGRAPH 1986; E. Veach, *Robust Monte Carlo
+//! Methods for Light Transport Simulation*, 1997 (multiple importance sampling, ch. 9; roulette and
+//! splitting, ch. 10); A. Wilkie et al., "Hero Wavelength Spectral Sampling", EGSR 2014.
+
+mod branch;
+mod direct;
+mod interface;
+mod medium;
+mod vertex;
+
+use crate::math::Ray;
+use crate::sampling::PixelSampler;
+use crate::scene::{BodyId, Face, Interior, LostRay, Scene};
+use crate::spectrum::{SampledSpectrum, SampledWavelengths};
+
+use super::gathered::Gathered;
+use super::meeting::Meeting;
+use super::tally::Tally;
+use branch::{Branch, Ways};
+use vertex::Vertex;
+
+/// How the walks are spent. None of these changes what the picture tends to, but `max_depth`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathSettings {
+    /// How many surfaces and scatterings one walk may meet.
+    pub max_depth: u32,
+    /// How many times both ways on at a smooth surface are followed, from the eye on.
+    pub split_depth: u32,
+    /// A branch that carries less than this share of the visible light is followed by chance only.
+    pub roulette_below: f64,
+}
+
+/// A tree is split only if either way carries this share of the visible light.
+const SPLIT_ABOVE: f64 = 0.002;
+
+/// One sample's tree of rays.
+pub struct PathWalk<'a> {
+    scene: &'a Scene,
+    settings: PathSettings,
+    wavelengths: SampledWavelengths,
+    /// How much each lane matters to the eye: the sum of its colour-matching functions; together 1.
+    visibility: SampledSpectrum,
+    tally: &'a mut Tally,
+    gathered: &'a mut Gathered,
+    pending: Vec<Branch>,
+}
+
+/// What a branch comes to.
+enum Event<'a> {
+    /// It leaves the scene.
+    Escape,
+    /// It is lost, and counted.
+    Lost,
+    /// It is scattered inside a body.
+    Scattering(Vertex<'a>),
+    /// It meets opaque matter.
+    Surface(Meeting),
+    /// It meets the boundary between two transparent media.
+    Interface(Meeting, Face, Interior),
+}
+
+impl<'a> PathWalk<'a> {
+    /// Gather the light that arrives at the eye against `ray`, which starts in `interior`.
+    pub fn gather(
+        scene: &'a Scene,
+        settings: PathSettings,
+        wavelengths: SampledWavelengths,
+        sampler: PixelSampler,
+        tally: &'a mut Tally,
+        gathered: &'a mut Gathered,
+        start: (Ray, Interior),
+    ) {
+        let visibility = scene.visibility.at(wavelengths);
+        let pending = vec![Branch::from_eye(start, sampler)];
+        let mut walk = Self { scene, settings, wavelengths, visibility, tally, gathered, pending };
+        walk.tally.ledger.start();
+        while let Some(branch) = walk.pending.pop() {
+            walk.follow(branch);
+        }
+    }
+
+    /// One segment, and the light and the ways on at its end.
+    fn follow(&mut self, mut branch: Branch) {
+        let event = self.next_event(&mut branch);
+        let before = self.weight(branch.throughput);
+        match event {
+            Event::Lost => {}
+            Event::Escape => {
+                self.see_background(&branch);
+                self.tally.ledger.escape(before);
+            }
+            Event::Scattering(vertex) => {
+                let ways = [self.scatter(branch, &vertex), None];
+                self.go_on(ways, before, None);
+            }
+            Event::Surface(meeting) => {
+                self.see_emission(&branch, &meeting);
+                let body = meeting.hit.body;
+                let ways = self.answer(branch, meeting);
+                self.go_on(ways, before, Some(body));
+            }
+            Event::Interface(meeting, face, beyond) => {
+                let ways = self.cross(branch, meeting, face, beyond);
+                self.go_on(ways, before, None);
+            }
+        }
+    }
+
+    /// Follow a branch to what it meets next, through all surfaces that are none to light.
+    fn next_event(&mut self, branch: &mut Branch) -> Event<'a> {
+        loop {
+            self.tally.eye_rays += 1;
+            let place = self.scene.first_place(&branch.ray);
+            let length = place.as_ref().map_or(f64::INFINITY, |place| place.hit.point.t);
+            if let Some(body) = branch.interior.filling(&self.scene.bodies) {
+                if place.is_none() {
+                    return self.lose(branch, body, LostRay::EndedInside);
+                }
+                if let Some(vertex) = self.pass_through(branch, body, length) {
+                    return Event::Scattering(vertex);
+                }
+            }
+            let Some(place) = place else {
+                return Event::Escape;
+            };
+            let hit = place.hit;
+            if self.scene.material_of(hit.body).dielectric().is_none() {
+                return Event::Surface(Meeting::new(hit, branch.ray.direction));
+            }
+            let mut lost = None;
+            let beyond = branch.interior.through(place.faces(), |body, cause| {
+                self.tally.lose(body, cause);
+                lost = Some(body);
+            });
+            if let Some(face) = self.scene.interface(&branch.interior, &beyond) {
+                let meeting = Meeting::new(hit, branch.ray.direction);
+                return Event::Interface(meeting, face, beyond);
+            }
+            branch.interior = beyond;
+            branch.ray.origin = hit.point.leave_along(branch.ray.direction);
+            // So that no defect makes an endless walk.
+            branch.depth += u32::from(lost.is_some());
+            if branch.depth > self.settings.max_depth {
+                self.tally.ledger.lose(self.weight(branch.throughput));
+                return Event::Lost;
+            }
+        }
+    }
+
+    fn lose(&mut self, branch: &Branch, body: BodyId, cause: LostRay) -> Event<'a> {
+        self.tally.lose(body, cause);
+        self.tally.ledger.lose(self.weight(branch.throughput));
+        Event::Lost
+    }
+
+    /// Queue the ways on, and book what stayed in `body` (or in the choices at random).
+    fn go_on(&mut self, ways: Ways, before: f64, body: Option<BodyId>) {
+        let mut after = 0.0;
+        for mut branch in ways.into_iter().flatten() {
+            let weight = self.weight(branch.throughput);
+            if weight <= 0.0 {
+                continue;
+            }
+            after += weight;
+            branch.depth += 1;
+            if branch.depth > self.settings.max_depth {
+                self.tally.cut_by_depth += 1;
+                self.tally.ledger.cut(weight);
+            } else if self.survives(&mut branch, weight) {
+                self.pending.push(branch);
+            }
+        }
+        match body {
+            Some(body) => self.tally.ledger.absorb(body, before, after),
+            None => self.tally.ledger.chance(before, after),
+        }
+    }
+
+    /// Russian roulette: end a branch of little weight, or make it stand for those that ended.
+    fn survives(&mut self, branch: &mut Branch, weight: f64) -> bool {
+        let least = self.settings.roulette_below;
+        if weight >= least {
+            return true;
+        }
+        let [u, ..] = branch.sampler.next_4d();
+        let lives = u * least < weight;
+        self.tally.ledger.chance(weight, if lives { least } else { 0.0 });
+        branch.throughput *= least / weight;
+        lives
+    }
+
+    /// Follow two ways on that carry about `shares` of the throughput: both while that matters, else
+    /// one, by chance in proportion to what the eye gets of it, in the place of both.
+    fn divide(&self, mut branch: Branch, shares: [SampledSpectrum; 2], u: f64) -> Ways {
+        let [first, second] = shares.map(|share| self.weight(branch.throughput * share));
+        if branch.splits < self.settings.split_depth && first.min(second) >= SPLIT_ABOVE {
+            branch.splits += 1;
+            let other = Branch { sampler: branch.sampler.fork(branch.splits), ..branch.clone() };
+            return [Some(branch), Some(other)];
+        }
+        let probability = first / (first + second);
+        if u < probability {
+            branch.throughput *= 1.0 / probability;
+            [Some(branch), None]
+        } else if second > 0.0 {
+            branch.throughput *= 1.0 / (1.0 - probability);
+            [None, Some(branch)]
+        } else {
+            [None, None]
+        }
+    }
+
+    /// The share of the light that the eye sees of what a throughput carries.
+    fn weight(&self, throughput: SampledSpectrum) -> f64 {
+        throughput.dot(self.visibility)
+    }
+
+    /// How probable each lane is to be chosen, by what the eye gets of it; together 1.
+    fn lanes(&self, throughput: SampledSpectrum) -> SampledSpectrum {
+        let seen = throughput * self.visibility;
+        seen * (1.0 / throughput.dot(self.visibility))
+    }
+}
+
+/// The lane that `u` chooses from probabilities that add up to 1.
+fn pick(lanes: &SampledSpectrum, u: f64) -> usize {
+    let mut sum = 0.0;
+    let last = lanes.0.iter().rposition(|c| *c > 0.0).unwrap_or(0);
+    lanes.0[..last]
+        .iter()
+        .position(|c| {
+            sum += c;
+            u < sum
+        })
+        .unwrap_or(last)
+}

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0 OR MIT
+//! [`Vertex`]: where a branch is turned at random, on a surface or inside a body.
+
+use crate::geometry::SurfacePoint;
+use crate::math::{orthonormal_pair, DMat3, DVec3};
+use crate::matter::{henyey_greenstein, sample_henyey_greenstein, Bsdf};
+use crate::scene::Interior;
+use crate::spectrum::SampledSpectrum;
+
+use super::Meeting;
+
+/// Where a branch is turned at random.
+pub(super) struct Vertex<'a> {
+    /// Where it is.
+    pub position: DVec3,
+    /// The bodies on the side that the branch comes from.
+    pub near: Interior,
+    place: Place<'a>,
+}
+
+enum Place<'a> {
+    Surface {
+        point: SurfacePoint,
+        /// The surface's normal on the branch's side.
+        true_normal: DVec3,
+        /// Columns: two tangents and the shading normal on the branch's side.
+        frame: DMat3,
+        /// The direction back along the branch, in the frame.
+        wi: DVec3,
+        bsdf: Bsdf<'a>,
+        /// The bodies on the far side.
+        far: Interior,
+    },
+    Body {
+        wi: DVec3,
+        anisotropy: f64,
+    },
+}
+
+impl<'a> Vertex<'a> {
+    /// A vertex on opaque matter or on a sheet, with `near` on both sides.
+    pub fn on_surface(meeting: Meeting, bsdf: Bsdf<'a>, near: Interior) -> Self {
+        Self::on_interface(meeting, bsdf, near, near)
+    }
+
+    /// A vertex on a rough boundary between the media of `near` and `far`.
+    pub fn on_interface(meeting: Meeting, bsdf: Bsdf<'a>, near: Interior, far: Interior) -> Self {
+        let point = meeting.hit.point;
+        let frame = frame(meeting.normal);
+        let wi = frame.transpose() * meeting.wi;
+        let true_normal = point.normal * meeting.side();
+        let place = Place::Surface { point, true_normal, frame, wi, bsdf, far };
+        Self { position: point.position, near, place }
+    }
+
+    /// A vertex inside a scattering body.
+    pub fn in_body(position: DVec3, wi: DVec3, anisotropy: f64, near: Interior) -> Self {
+        Self { position, near, place: Place::Body { wi, anisotropy } }
+    }
+
+    /// `wi` of a meeting in the frame of its shading normal.
+    pub fn local(meeting: &Meeting) -> DVec3 {
+        frame(meeting.normal).transpose() * meeting.wi
+    }
+
+    /// The share of the basic radiance arriving against `wo` that goes to wi, per steradian: f |cos θ|
+    /// of a surface, the phase function of a body.
+    pub fn answer(&self, wo: DVec3) -> SampledSpectrum {
+        match &self.place {
+            Place::Surface { frame, wi, bsdf, .. } => bsdf.eval(*wi, frame.transpose() * wo),
+            Place::Body { wi, anisotropy } => {
+                SampledSpectrum::splat(henyey_greenstein(-wi.dot(wo), *anisotropy))
+            },
+        }
+    }
+
+    /// The density of `sample`, per steradian.
+    pub fn pdf(&self, wo: DVec3, lanes: &SampledSpectrum) -> f64 {
+        match &self.place {
+            Place::Surface { frame, wi, bsdf, .. } => bsdf.pdf(*wi, frame.transpose() * wo, lanes),
+            Place::Body { wi, anisotropy } => henyey_greenstein(-wi.dot(wo), *anisotropy),
+        }
+    }
+
+    /// A direction `wo`, more often where more is answered.
+    pub fn sample(&self, lanes: &SampledSpectrum, u: [f64; 3]) -> Option<DVec3> {
+        match &self.place {
+            Place::Surface { frame, wi, bsdf, .. } => {
+                bsdf.sample(*wi, lanes, u).map(|wo| (*frame * wo).normalize())
+            }
+            Place::Body { wi, anisotropy } => {
+                Some(sample_henyey_greenstein(*wi, *anisotropy, [u[1], u[2]]))
+            },
+        }
+    }
+
+    /// Whether `wo`, in front of or behind the shaded surface, is so with the true one too.
+    pub fn agrees(&self, wo: DVec3) -> bool {
+        match &self.place {
+            Place::Surface { true_normal, frame, .. } => {
+                (wo.dot(*true_normal) > 0.0) == (wo.dot(frame.z_axis) > 0.0)
+            }
+            Place::Body { .. } => true,
+        }
+    }
+
+    /// `wo` mirrored at the true surface, to the side that `wo` has of the shaded one.
+    pub fn put_right(&self, wo: DVec3) -> DVec3 {
+        match &self.place {
+            Place::Surface { true_normal, .. } => wo - *true_normal * (2.0 * wo.dot(*true_normal)),
+            Place::Body { .. } => wo,
+        }
+    }
+
+    /// Where a ray along `wo` starts, and in which bodies.
+    pub fn leave_along(&self, wo: DVec3) -> (DVec3, Interior) {
+        match &self.place {
+            Place::Surface { point, true_normal, far, .. } => {
+                let is_near = wo.dot(*true_normal) > 0.0;
+                (point.leave_along(wo), if is_near { self.near } else { *far })
+            }
+            Place::Body { .. } => (self.position, self.near),
+        }
+    }
+}
+
+fn frame(normal: DVec3) -> DMat3 {
+    let (tangent, bitangent) = orthonormal_pair(normal);
+    DMat3::from_cols(tangent, bitangent, normal)
+}
