@@ -6,7 +6,7 @@ use super::*;
 use crate::geometry::{Cylinder, Disc, Primitive, Shape, Sphere};
 use crate::light::{Background, Base, DirectionGrid};
 use crate::math::{orthonormal_pair, DAffine3, DMat3, Ray};
-use crate::matter::{HallTerms, Material, Optics};
+use crate::matter::{Finish, HallTerms, Material, Optics};
 use crate::sampling::chi_square::{Cells, Uniform};
 use crate::scene::{
     Body, Camera, Distribution, Emission, Projection, Scene, SceneBuilder, SceneError, Strength,
@@ -192,7 +192,11 @@ fn add_material(builder: &mut SceneBuilder) -> usize {
         specular_transmittance: None,
         ambient_reflectance: None,
     };
-    builder.add_material(Material { optics: Optics::Diffuse(table(0.5)), hall })
+    builder.add_material(Material {
+        optics: Optics::Diffuse(table(0.5)),
+        finish: Finish::SMOOTH,
+        hall,
+    })
 }
 
 #[test]
