@@ -257,3 +257,6 @@ fn tabulate(area_vectors: &[DVec3], frame: DMat3) -> DirectionGrid {
     }
     DirectionGrid { polar, azimuths, values }
 }
+
+#[cfg(test)]
+mod tests;

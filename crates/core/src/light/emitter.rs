@@ -50,3 +50,48 @@ impl Emitter {
         self.radiance.at(wavelengths) * self.law.factor(cos, direction_out)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{PI, TAU};
+
+    use super::*;
+    use crate::spectrum::LANES;
+
+    fn emitter(law: AngularLaw) -> Emitter {
+        let radiance = SpectralTable::from_ascending(&[2.0; LANES]).unwrap();
+        Emitter { body: 0, group: 0, radiance, law, per_n2: false }
+    }
+
+    fn value(emitter: &Emitter, theta: f64) -> f64 {
+        let out = DVec3::new(theta.sin(), 0.0, theta.cos());
+        emitter.radiance(DVec3::Z, out, SampledWavelengths { phase: 0 }).0[4]
+    }
+
+    #[test]
+    fn the_back_is_dark_and_the_front_shines_by_its_law() {
+        let cube = emitter(AngularLaw::Cosine { exponent: 3.0 });
+        assert!((value(&cube, PI / 3.0) - 0.5).abs() < 1e-15);
+        assert_eq!(value(&cube, 0.0), 2.0);
+        for law in [AngularLaw::Lambert, AngularLaw::Cosine { exponent: 0.0 }] {
+            assert_eq!(value(&emitter(law), 2.0), 0.0);
+        }
+        assert_eq!(value(&emitter(AngularLaw::Lambert), 1.5), 2.0);
+    }
+
+    /// ∫ L cos θ dω by the midpoint rule in θ, against the flux that was given: 1 W/nm on 5 mm².
+    #[test]
+    fn the_flux_that_was_given_is_the_integral_of_radiance_and_cosine() {
+        let flux = SpectralTable::from_ascending(&[1.0; LANES]).unwrap();
+        for law in [0.0, 0.5, 1.0, 2.5, 40.0].map(|exponent| AngularLaw::Cosine { exponent }) {
+            let emitter = Emitter::with_flux(0, 0, &flux, law.clone(), 5.0);
+            let n = 20_000;
+            let ring = |i: usize| {
+                let theta = (i as f64 + 0.5) / n as f64 * PI / 2.0;
+                value(&emitter, theta) * theta.cos() * theta.sin() * TAU * (PI / 2.0 / n as f64)
+            };
+            let exitance: f64 = (0..n).map(ring).sum();
+            assert!((exitance * 5e-6 - 1.0).abs() < 1e-5, "{law:?}: {exitance}");
+        }
+    }
+}

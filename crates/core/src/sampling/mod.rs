@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 OR MIT
 //! Where samples fall: sequences keyed by (seed, pixel, sample, dimension), pixel filters, warps.
 
+#[cfg(test)]
+pub(crate) mod chi_square;
 mod choice;
 mod filter;
 mod sequence;

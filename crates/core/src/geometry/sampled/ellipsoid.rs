@@ -14,6 +14,8 @@ pub(super) struct Ellipsoid {
     to_unit: DAffine3,
     /// M⁻ᵀ·|det M|: takes a normal n of the unit sphere to n·(dA of the ellipsoid per dA of it).
     cofactors: DMat3,
+    /// 1/|det M|.
+    shrink: f64,
     area: f64,
 }
 
@@ -29,7 +31,7 @@ impl Ellipsoid {
         let stretch = from_unit.matrix3.determinant().abs();
         let cofactors = to_unit.matrix3.transpose() * stretch;
         let area = orientations(256, 512).map(|(n, dω)| (cofactors * n).length() * dω).sum();
-        Self { from_unit, to_unit, cofactors, area }
+        Self { from_unit, to_unit, cofactors, shrink: 1.0 / stretch, area }
     }
 
     pub fn area(&self) -> f64 {
@@ -94,8 +96,7 @@ impl Ellipsoid {
 
     fn density(&self, cone: &Cone, direction: DVec3) -> f64 {
         let back = self.to_unit.matrix3 * direction;
-        let shrink = self.to_unit.matrix3.determinant().abs();
-        shrink / back.length().powi(3) / (TAU * cone.one_minus_cos)
+        self.shrink / back.length().powi(3) / (TAU * cone.one_minus_cos)
     }
 }
 

@@ -55,7 +55,7 @@ pub struct SampledSurface {
 enum Form {
     Mesh(Mesh),
     Pieces(Pieces),
-    Ellipsoid(Ellipsoid),
+    Ellipsoid(Box<Ellipsoid>),
 }
 
 impl SampledSurface {
@@ -70,7 +70,7 @@ impl SampledSurface {
         let (patches, to_world) = (primitive.patches()?, primitive.placement());
         let form = match patches.as_slice() {
             [Patch::Sphere { centre, radius }] => {
-                Form::Ellipsoid(Ellipsoid::new(*centre, *radius, to_world))
+                Form::Ellipsoid(Box::new(Ellipsoid::new(*centre, *radius, to_world)))
             }
             _ => Form::Pieces(Pieces::new(&patches, to_world)?),
         };

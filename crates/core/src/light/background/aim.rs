@@ -79,7 +79,7 @@ impl Aim {
         let boxes = soft_boxes.iter().zip(&self.box_luminance).enumerate();
         let boxes = boxes.map(move |(at, (soft_box, luminance))| {
             let weight =
-                if *luminance > 0.0 { luminance * soft_box.solid_angle(from) } else { 0.0 };
+                if *luminance > 0.0 { luminance * soft_box.apparent_size(from) } else { 0.0 };
             (Target::Box(at), weight)
         });
         let suns = self.sun_weight.iter().enumerate().map(|(at, w)| (Target::Sun(at), *w));

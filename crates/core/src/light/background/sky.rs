@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 OR MIT
 //! [`Sky`]: the CIE standard general sky.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::FRAC_PI_2;
 
 use crate::math::DVec3;
 use crate::spectrum::{SampledSpectrum, SampledWavelengths, SpectralTable};
@@ -81,22 +81,5 @@ impl Sky {
             return self.ground.at(at);
         }
         self.zenith.at(at) * self.model.relative(direction)
-    }
-
-    /// The illuminance of open level ground over the zenith's luminance, in sr: ∫ L/Lz cos Z dω, to
-    /// 1e-4 or better.
-    pub fn horizontal_share(model: &SkyModel) -> f64 {
-        const RINGS: usize = 256;
-        const STEPS: usize = 512;
-        let mut sum = 0.0;
-        for ring in 0..RINGS {
-            let square = (ring as f64 + 0.5) / RINGS as f64;
-            for step in 0..STEPS {
-                let (sin, cos) = (2.0 * PI * (step as f64 + 0.5) / STEPS as f64).sin_cos();
-                let across = (1.0 - square).sqrt();
-                sum += model.relative(DVec3::new(across * cos, square.sqrt(), across * sin));
-            }
-        }
-        PI * sum / (RINGS * STEPS) as f64
     }
 }
