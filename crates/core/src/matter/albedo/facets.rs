@@ -55,3 +55,10 @@ pub fn interface_shares(facets: usize, ggx: Ggx, mu: f64, eta: f64) -> Shares {
     let loss = (1.0 - (reflected + transmitted) * share).max(0.0);
     Shares { loss, reflected: reflected * share }
 }
+
+/// The mean cosine of incidence on the facets that are seen.
+pub fn mean_incidence(facets: usize, ggx: Ggx, mu: f64) -> f64 {
+    let mut sum = 0.0;
+    let share = for_visible(facets, ggx, mu, |wi, h, _| sum += wi.dot(h));
+    sum * share
+}

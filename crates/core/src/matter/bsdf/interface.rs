@@ -37,7 +37,7 @@ struct Pair<'a> {
 
 /// The facet that joins two directions.
 struct Joint {
-    /// The reflectance of the facet.
+    /// The share of the light that the facet sends on this way.
     f: f64,
     /// The density of that facet among those seen, per sr of wo.
     visible: f64,
@@ -144,16 +144,17 @@ impl<'a> Pair<'a> {
 
     /// One facet's share of the light, before other facets hide it, per sr of wo.
     fn single(&self, eta: f64) -> f64 {
-        let joint = if self.wo.z > 0.0 { self.mirrored(eta) } else { self.refracted(eta) };
+        let joint =
+            if self.wo.z > 0.0 { Some(self.mirrored(eta)) } else { self.refracted(eta) };
         joint.map_or(0.0, |joint| joint.f * joint.visible)
     }
 
-    fn mirrored(&self, eta: f64) -> Option<Joint> {
+    fn mirrored(&self, eta: f64) -> Joint {
         let h = (self.wi + self.wo).normalize();
         let cos_i = self.wi.dot(h);
         let visible =
             self.rough.table.ggx().visible_density(self.wi, h, self.lambda_i) / (4.0 * cos_i);
-        Some(Joint { f: dielectric_reflectance(cos_i, eta), visible })
+        Joint { f: dielectric_reflectance(cos_i, eta), visible }
     }
 
     /// Walter et al., eqs. (16), (17) and (21): dωₕ/dωₒ = η²·|wo·h|/(wi·h + η·wo·h)².

@@ -23,7 +23,7 @@ pub use lambert::{Diffuse, Transmitter};
 pub use reflector::{Facet, LacqueredMetal, Reflector};
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;
 
 use super::albedo::{AlbedoTable, Sides};
 use crate::math::DVec3;
@@ -110,8 +110,8 @@ impl<'a> Bsdf<'a> {
         }
     }
 
-    /// The directional albedo ∫ eval dωₒ per lane: exact but for rough reflectors, whose facets'
-    /// mean reflectance is taken at the angle of incidence. Zero without anything but a mirror.
+    /// The directional albedo ∫ eval dωₒ per lane: an estimate for rough reflectors,
+    /// which takes their facets at the mean cosine of incidence. Zero without anything but a mirror.
     pub fn albedo(&self, wi: DVec3) -> SampledSpectrum {
         match self {
             Self::Diffuse(diffuse) => diffuse.albedo(),

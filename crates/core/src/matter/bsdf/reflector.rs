@@ -138,9 +138,11 @@ impl<'a> Reflector<'a> {
         let Some(rough) = self.rough.filter(|_| wi.z > 0.0) else {
             return SampledSpectrum::ZERO;
         };
-        let loss = rough.loss(wi.z);
+        let mu = rough.table.between_cosines(wi.z);
+        let loss = rough.table.reflector_loss(mu);
         let lost = std::f64::consts::PI * rough.table.mean_reflector_loss() * loss;
-        self.facet.reflectance(wi.z) * (1.0 - loss) + rough.further * lost
+        let facet = self.facet.reflectance(rough.table.incidence(mu));
+        facet * (1.0 - loss) + rough.further * lost
     }
 }
 

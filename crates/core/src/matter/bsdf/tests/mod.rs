@@ -2,7 +2,7 @@
 //! What every surface must hold: `sample` follows `pdf`, light goes both ways alike, and none is
 //! made or lost.
 
-mod chi_square;
+pub mod chi_square;
 mod energy;
 mod limits;
 mod reciprocity;
@@ -70,13 +70,13 @@ impl Numbers {
 /// Directions in a grid round an axis, that is finer near it: w = ½(1 − cos γ) of a direction at
 /// the angle γ is w = ε·s/(1 + ε − s) with s uniform, so that half of the grid has w < ε.
 #[derive(Clone, Copy)]
-struct Dome {
+pub struct Dome {
     frame: [DVec3; 3],
     epsilon: f64,
 }
 
 impl Dome {
-    fn new(axis: DVec3, epsilon: f64) -> Self {
+    pub fn new(axis: DVec3, epsilon: f64) -> Self {
         let (x, y) = orthonormal_pair(axis);
         Self { frame: [x, y, axis], epsilon }
     }
@@ -142,7 +142,7 @@ fn integrate(
         return fine;
     }
     let (s, v) = (0.5 * (s0 + s1), 0.5 * (v0 + v1));
-    let quarter = |s: [f64; 2], v: [f64; 2]| integrate(f, s, v, depth - 1, 0.5 * tolerance);
+    let quarter = |s: [f64; 2], v: [f64; 2]| integrate(f, s, v, depth - 1, tolerance);
     quarter([s0, s], [v0, v])
         + quarter([s, s1], [v0, v])
         + quarter([s0, s], [v, v1])

@@ -11,36 +11,34 @@ const LIMIT: f64 = 3.9;
 
 const COSINES: [f64; 4] = [0.99, 0.6, 0.2, 0.02];
 
+/// The last direction before grazing at which a narrow lobe still clears the horizon.
+fn cosines(alpha: f64) -> impl Iterator<Item = f64> {
+    COSINES.into_iter().map(move |cos| if alpha < 0.05 { cos.max(0.2) } else { cos })
+}
+
 /// Test both sides apart, each round its own peak.
 fn check(name: &str, bsdf: &Bsdf, wi: DVec3, lanes: &SampledSpectrum, peaks: [(DVec3, f64); 2]) {
     for (side, (axis, epsilon)) in [1.0, -1.0].into_iter().zip(peaks) {
         let is_counted = |wo: DVec3| wo.z * side > 0.0;
         let pdf = |wo: DVec3| bsdf.pdf(wi, wo, lanes);
-        let reached = integrate(
-            &|s, v| {
-                let (wo, area) = Dome::new(axis, epsilon).direction(s, v);
-                if is_counted(wo) {
-                    pdf(wo) * area
-                } else {
-                    0.0
-                }
-            },
-            [0.0, 1.0],
-            [0.0, 1.0],
-            6,
-            1e-4,
-        );
-        if reached < 0.01 {
-            continue;
-        }
         let sample = |u| bsdf.sample(wi, lanes, u);
         let z = deviate(Dome::new(axis, epsilon), &is_counted, &pdf, &sample, wi.z.to_bits());
         assert!(z < LIMIT, "{name}, wi.z = {}, side {side}: {z:.2} sigma", wi.z);
     }
 }
 
+/// The grid for a lobe of this width: round its peak if it is narrow, else with the horizon on a
+/// line of the grid.
+fn lobe(peak: DVec3, alpha: f64, width: f64) -> (DVec3, f64) {
+    if alpha < 0.3 {
+        (peak, width)
+    } else {
+        evenly(peak.z.signum())
+    }
+}
+
 fn evenly(axis: f64) -> (DVec3, f64) {
-    (DVec3::Z * axis, 0.5)
+    (DVec3::Z * axis, 1.0)
 }
 
 #[test]
@@ -63,10 +61,10 @@ fn matt_surfaces_are_sampled_by_their_density() {
 fn rough_reflectors_are_sampled_by_their_density() {
     for alpha in [0.01, 0.1, 0.4, 1.0] {
         let table = AlbedoTable::new(alpha).unwrap();
-        for cos in COSINES {
+        for cos in cosines(alpha) {
             let wi = direction(cos, 2.0);
-            let peak = (reflect(wi, DVec3::Z), 2.0 * alpha * alpha);
-            for facet in [aluminium(), Facet::Measured(SampledSpectrum::ONE)] {
+            let peak = lobe(reflect(wi, DVec3::Z), alpha, 2.0 * alpha * alpha);
+            for facet in [aluminium(), lacquered()] {
                 let metal = Bsdf::Reflector(Reflector::new(facet, Some(&table)));
                 let name = format!("metal {alpha}");
                 check(&name, &metal, wi, &even_lanes(), [peak, evenly(-1.0)]);
@@ -81,9 +79,9 @@ fn rough_coats_are_sampled_by_their_density() {
         let table = AlbedoTable::new(alpha).unwrap();
         for eta in [SampledSpectrum::splat(1.5), dispersive(1.5)] {
             let coat = Bsdf::Glossy(Glossy::new(eta, rising(0.05, 0.5), Some(&table)));
-            for cos in COSINES {
+            for cos in cosines(alpha) {
                 let wi = direction(cos, 2.0);
-                let peak = (reflect(wi, DVec3::Z), 2.0 * alpha * alpha);
+                let peak = lobe(reflect(wi, DVec3::Z), alpha, 2.0 * alpha * alpha);
                 let name = format!("coat {alpha}");
                 check(&name, &coat, wi, &uneven_lanes(), [peak, evenly(-1.0)]);
             }
@@ -95,17 +93,18 @@ fn rough_coats_are_sampled_by_their_density() {
 fn rough_glass_is_sampled_by_its_density_from_both_sides() {
     for alpha in [0.01, 0.1, 0.4, 1.0] {
         let table = AlbedoTable::new(alpha).unwrap();
-        for eta in [1.5, 1.0 / 1.5, 1.06, 1.0 / 1.06] {
+        for eta in [1.5, 1.0 / 1.5, 1.06] {
             for (etas, lanes) in
                 [(SampledSpectrum::splat(eta), even_lanes()), (dispersive(eta), uneven_lanes())]
             {
                 let glass = Bsdf::interface(etas, Some(&table));
-                for cos in COSINES {
+                for cos in cosines(alpha) {
                     let wi = direction(cos, 0.5);
                     let through = refract(wi, DVec3::Z, eta).unwrap_or(-DVec3::Z);
                     let width = 2.0 * alpha * alpha;
                     let across = width * (1.0 - 1.0 / eta).powi(2) + 1e-4;
-                    let peaks = [(reflect(wi, DVec3::Z), width), (through, across)];
+                    let mirror = lobe(reflect(wi, DVec3::Z), alpha, width);
+                    let peaks = [mirror, lobe(through, alpha, across)];
                     check(&format!("glass {alpha} {eta}"), &glass, wi, &lanes, peaks);
                 }
             }
