@@ -155,10 +155,11 @@ impl Material {
         wavelengths: SampledWavelengths,
     ) -> Option<SampledSpectrum> {
         match &self.optics {
-            Optics::Diffuse(reflectance) => Some(reflectance.at(wavelengths)),
+            Optics::Diffuse(reflectance) | Optics::Transmitter { reflectance, .. } => {
+                Some(reflectance.at(wavelengths))
+            }
             Optics::Checker(checker) => Some(checker.at(point).at(wavelengths)),
             Optics::Glossy { base, .. } => Some(base.at(wavelengths)),
-            Optics::Transmitter { reflectance, .. } => Some(reflectance.at(wavelengths)),
             Optics::Dielectric(_) | Optics::Conductor { .. } | Optics::Mirror(_) => None,
         }
     }

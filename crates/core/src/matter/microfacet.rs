@@ -26,19 +26,19 @@ impl Ggx {
     }
 
     /// The width α.
-    pub fn alpha(&self) -> f64 {
+    pub fn alpha(self) -> f64 {
         self.alpha
     }
 
     /// D(h): the area of facets with the normal `h` (`h.z` > 0) per area of surface and per sr.
-    pub fn density(&self, h: DVec3) -> f64 {
+    pub fn density(self, h: DVec3) -> f64 {
         let alpha2 = self.alpha * self.alpha;
         let spread = (h.x * h.x + h.y * h.y) / alpha2 + h.z * h.z;
         1.0 / (PI * alpha2 * spread * spread)
     }
 
     /// Smith's Λ(w): the area that hides other facets from `w` per area that is seen.
-    pub fn lambda(&self, w: DVec3) -> f64 {
+    pub fn lambda(self, w: DVec3) -> f64 {
         let slope2 = self.alpha * self.alpha * (w.x * w.x + w.y * w.y) / (w.z * w.z);
         0.5 * slope2 / (1.0 + (1.0 + slope2).sqrt())
     }
@@ -46,14 +46,14 @@ impl Ggx {
     /// The density per sr of [`Self::visible_normal`]: D(h)·G₁(wi)·max(0, wi·h)/wi.z.
     ///
     /// `lambda_i` is Λ(wi).
-    pub fn visible_density(&self, wi: DVec3, h: DVec3, lambda_i: f64) -> f64 {
+    pub fn visible_density(self, wi: DVec3, h: DVec3, lambda_i: f64) -> f64 {
         self.density(h) * wi.dot(h).max(0.0) / ((1.0 + lambda_i) * wi.z)
     }
 
     /// The normal of a facet that is seen from `wi` (`wi.z` > 0), by two uniform numbers.
     ///
     /// Source: J. Dupuy and A. Benyoub, "Sampling Visible GGX Normals with Spherical Caps", HPG 2023.
-    pub fn visible_normal(&self, wi: DVec3, u: [f64; 2]) -> DVec3 {
+    pub fn visible_normal(self, wi: DVec3, u: [f64; 2]) -> DVec3 {
         let stretched = DVec3::new(self.alpha * wi.x, self.alpha * wi.y, wi.z).normalize();
         let z = (1.0 - u[1]) * (1.0 + stretched.z) - stretched.z;
         let radius = ((1.0 - z) * (1.0 + z)).max(0.0).sqrt();

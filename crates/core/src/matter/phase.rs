@@ -29,3 +29,44 @@ pub fn sample_henyey_greenstein(wi: DVec3, g: f64, u: [f64; 2]) -> DVec3 {
     let (x, y) = orthonormal_pair(-wi);
     x * (sin * cos_azimuth) + y * (sin * sin_azimuth) - wi * cos
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::matter::bsdf::tests::{chi_square::deviate, Dome};
+
+    #[test]
+    fn the_phase_function_is_normalised_with_the_mean_cosine_g() {
+        for g in [-0.9, -0.3, 0.0, 0.5, 0.95] {
+            let steps = 200_000;
+            let (mut whole, mut mean) = (0.0, 0.0);
+            for i in 0..steps {
+                let cos = 2.0 * (f64::from(i) + 0.5) / f64::from(steps) - 1.0;
+                let share = henyey_greenstein(cos, g) * 2.0 * TAU / f64::from(steps);
+                whole += share;
+                mean += share * cos;
+            }
+            assert!((whole - 1.0).abs() < 1e-5 && (mean - g).abs() < 1e-5, "{g}: {whole} {mean}");
+        }
+    }
+
+    #[test]
+    fn scattering_is_sampled_by_the_phase_function() {
+        let wi = DVec3::new(0.3, -0.5, 0.2).normalize();
+        for (seed, g) in [-0.8_f64, 0.0, 1e-9, 0.6, 0.98].into_iter().enumerate() {
+            let axis = if g < 0.0 { wi } else { -wi };
+            let dome = Dome::new(axis, ((1.0 - g) * (1.0 - g)).clamp(1e-4, 0.5));
+            let pdf = |wo: DVec3| henyey_greenstein(-wi.dot(wo), g);
+            let sample = |u: [f64; 3]| Some(sample_henyey_greenstein(wi, g, [u[0], u[1]]));
+            let z = deviate(dome, &|_| true, &pdf, &sample, seed as u64);
+            assert!(z < 3.5, "g = {g}: {z:.2} sigma");
+        }
+    }
+
+    #[test]
+    fn positive_g_goes_straight_on() {
+        let wi = DVec3::Z;
+        assert!((sample_henyey_greenstein(wi, 0.999, [0.5, 0.1]) + wi).length() < 0.01);
+        assert!((sample_henyey_greenstein(wi, -0.999, [0.5, 0.1]) - wi).length() < 0.01);
+    }
+}

@@ -4,9 +4,9 @@
 use std::f64::consts::FRAC_1_PI;
 
 use super::lambert::above;
-use super::{happens, Ratios};
+use super::{happens, Ratios, Rough};
 use crate::math::{DVec2, DVec3};
-use crate::matter::albedo::{AlbedoTable, Between};
+use crate::matter::albedo::{AlbedoTable, Between, Sides};
 use crate::matter::fresnel::{dielectric_reflectance, diffuse_dielectric_reflectance, reflect};
 use crate::matter::microfacet::masking_of_reflection;
 use crate::sampling::cosine_hemisphere;
@@ -20,7 +20,7 @@ use crate::spectrum::SampledSpectrum;
 #[derive(Clone, Copy, Debug)]
 pub struct Glossy<'a> {
     ratios: Ratios,
-    table: Option<&'a AlbedoTable>,
+    rough: Option<Rough<'a>>,
     /// ρ/(1 − ρ·`R_in`)/(π·η²).
     base: SampledSpectrum,
     /// 1 − 2∫ R(µ) µ dµ.
@@ -36,12 +36,13 @@ impl<'a> Glossy<'a> {
         roughness: Option<&'a AlbedoTable>,
     ) -> Self {
         let ratios = Ratios::new(eta);
+        let rough = roughness.map(|table| Rough::new(table, &ratios));
         let mean_entered = ratios.map(|eta| {
-            let Some(table) = roughness else {
+            let Some(rough) = rough else {
                 return 1.0 - diffuse_dielectric_reflectance(eta);
             };
-            let mean = table.mean_shares(eta);
-            1.0 - mean.reflected - mean.loss * (1.0 - table.returned_through(eta))
+            let sides = rough.sides(eta);
+            1.0 - sides.here.mean_reflected() - sides.here.mean_loss() * (1.0 - sides.through)
         });
         let base = SampledSpectrum::from_fn(|j| {
             let (rho, eta2) = (base.0[j], eta.0[j] * eta.0[j]);
@@ -53,36 +54,41 @@ impl<'a> Glossy<'a> {
                 0.0
             }
         });
-        Self { ratios, table: roughness, base, mean_entered }
+        Self { ratios, rough, base, mean_entered }
     }
 
     pub(super) fn mirror(&self, cos_i: f64) -> Option<SampledSpectrum> {
-        self.table.is_none().then(|| self.ratios.map(|eta| dielectric_reflectance(cos_i, eta)))
+        self.rough.is_none().then(|| self.ratios.map(|eta| dielectric_reflectance(cos_i, eta)))
     }
 
     pub(super) fn eval(&self, wi: DVec3, wo: DVec3) -> SampledSpectrum {
         if wi.z <= 0.0 || wo.z <= 0.0 {
             return SampledSpectrum::ZERO;
         }
-        let Some(table) = self.table else {
+        let Some(rough) = self.rough else {
             let entered = self.ratios.map(|eta| {
                 (1.0 - dielectric_reflectance(wi.z, eta))
                     * (1.0 - dielectric_reflectance(wo.z, eta))
             });
             return self.base * entered * wo.z;
         };
-        let (ggx, h) = (table.ggx(), (wi + wo).normalize());
+        let (ggx, h) = (rough.table.ggx(), (wi + wo).normalize());
         let masking = masking_of_reflection(ggx.lambda(wi), ggx.lambda(wo));
         let single = ggx.density(h) * masking / (4.0 * wi.z);
-        let cosines = [wi.z, wo.z].map(|mu| table.between_cosines(mu));
+        let cosines = [wi.z, wo.z].map(|mu| rough.table.between_cosines(mu));
+        let mut entered = SampledSpectrum::ZERO;
+        let mut lane = 0;
         let coat = self.ratios.map(|eta| {
+            let sides = rough.sides(eta);
+            let [i, o] = cosines.map(|mu| 1.0 - coat_albedo(&sides, mu));
+            entered.0[lane] = i * o;
+            lane += 1;
             let f = dielectric_reflectance(wi.dot(h), eta);
-            f * single + returned(table, eta, cosines) * wo.z
+            f * single + returned(&sides, cosines) * wo.z
         });
-        let entered = self.ratios.map(|eta| {
-            let [i, o] = cosines.map(|mu| 1.0 - coat_albedo(table, eta, mu));
-            i * o
-        });
+        if lane == 1 {
+            entered = SampledSpectrum::splat(entered.0[0]);
+        }
         coat + self.base * entered * wo.z
     }
 
@@ -91,63 +97,93 @@ impl<'a> Glossy<'a> {
             return 0.0;
         }
         let even = wo.z * FRAC_1_PI;
-        let Some(table) = self.table else {
+        let Some(rough) = self.rough else {
             return even;
         };
-        let (ggx, h) = (table.ggx(), (wi + wo).normalize());
+        let (ggx, h) = (rough.table.ggx(), (wi + wo).normalize());
         let facet = ggx.visible_density(wi, h, ggx.lambda(wi)) / (4.0 * wi.dot(h));
-        let chance = self.chance_of_facet(table, wi.z, lanes);
-        chance * facet + (1.0 - chance) * even
+        let [facet_share, further_share] = self.chances(&rough, wi.z, lanes);
+        let mu = rough.table.between_cosines(wo.z);
+        let further =
+            self.ratios.mean(lanes, |eta| rough.table.lobe_density(rough.sides(eta).here, mu));
+        let base_share = 1.0 - facet_share - further_share;
+        facet_share * facet + (further_share * further + base_share) * even
     }
 
     pub(super) fn sample(&self, wi: DVec3, lanes: &SampledSpectrum, u: [f64; 3]) -> Option<DVec3> {
-        if let Some(table) = self.table {
+        let at = [u[0], u[1]];
+        if let Some(rough) = self.rough {
             let mut choice = u[2];
-            if happens(self.chance_of_facet(table, wi.z, lanes), &mut choice) {
-                return above(reflect(wi, table.ggx().visible_normal(wi, [u[0], u[1]])));
+            let [facet_share, further_share] = self.chances(&rough, wi.z, lanes);
+            if happens(facet_share, &mut choice) {
+                return above(reflect(wi, rough.table.ggx().visible_normal(wi, at)));
+            }
+            if happens(further_share / (1.0 - facet_share), &mut choice) {
+                let side = rough.sides(self.ratios.choose(lanes, &mut choice)).here;
+                return above(rough.table.sample_lobe(side, at));
             }
         }
-        above(cosine_hemisphere(DVec2::new(u[0], u[1])))
+        above(cosine_hemisphere(DVec2::from_array(at)))
     }
 
     pub(super) fn albedo(&self, wi: DVec3) -> SampledSpectrum {
         if wi.z <= 0.0 {
             return SampledSpectrum::ZERO;
         }
-        let whole = self.base * self.mean_entered * std::f64::consts::PI;
-        let Some(table) = self.table else {
+        let whole = self.entered_albedo();
+        let Some(rough) = self.rough else {
             return whole * self.ratios.map(|eta| 1.0 - dielectric_reflectance(wi.z, eta));
         };
-        let mu = table.between_cosines(wi.z);
-        let coat = self.ratios.map(|eta| coat_albedo(table, eta, mu));
+        let mu = rough.table.between_cosines(wi.z);
+        let coat = self.ratios.map(|eta| coat_albedo(&rough.sides(eta), mu));
         coat + whole * (SampledSpectrum::ONE - coat)
     }
 
-    /// The chance to follow one facet's reflection and not what is spread evenly.
-    fn chance_of_facet(&self, table: &AlbedoTable, mu: f64, lanes: &SampledSpectrum) -> f64 {
-        let mu_at = table.between_cosines(mu);
-        let facet = self.ratios.mean(lanes, |eta| table.shares(eta, mu_at).reflected);
-        let all = self.albedo(DVec3::new(0.0, 0.0, mu)).dot(*lanes);
-        if all > 0.0 {
-            (facet / all).clamp(0.0, 1.0)
+    /// The chances to follow what one facet reflects and what more of them do, and not the base.
+    fn chances(&self, rough: &Rough, mu: f64, lanes: &SampledSpectrum) -> [f64; 2] {
+        let between = rough.table.between_cosines(mu);
+        let (mut facet, mut further, mut base) = (0.0, 0.0, 0.0);
+        let mut add = |weight: f64, below: f64, eta: f64| {
+            let sides = rough.sides(eta);
+            let shares = sides.here.shares(between);
+            facet += weight * shares.reflected;
+            further += weight * shares.loss * (1.0 - sides.through);
+            base += below * (1.0 - coat_albedo(&sides, between));
+        };
+        let below = *lanes * self.entered_albedo();
+        if self.ratios.is_dispersive {
+            for (j, eta) in self.ratios.eta.0.iter().enumerate() {
+                add(lanes.0[j], below.0[j], *eta);
+            }
         } else {
-            1.0
+            add(1.0, below.0.iter().sum(), self.ratios.eta.0[0]);
         }
+        let all = facet + further + base;
+        if all > 0.0 {
+            [facet / all, further / all]
+        } else {
+            [1.0, 0.0]
+        }
+    }
+
+    /// What the base gives back of the light that has passed the coat once.
+    fn entered_albedo(&self) -> SampledSpectrum {
+        self.base * self.mean_entered * std::f64::consts::PI
     }
 }
 
 /// R(µ): what a rough coat reflects in all, by one facet or more.
-fn coat_albedo(table: &AlbedoTable, eta: f64, mu: Between) -> f64 {
-    let shares = table.shares(eta, mu);
-    shares.reflected + shares.loss * (1.0 - table.returned_through(eta))
+fn coat_albedo(sides: &Sides, mu: Between) -> f64 {
+    let shares = sides.here.shares(mu);
+    shares.reflected + shares.loss * (1.0 - sides.through)
 }
 
 /// What a rough coat reflects by more than one facet, but for µₒ.
-fn returned(table: &AlbedoTable, eta: f64, cosines: [Between; 2]) -> f64 {
-    let [i, o] = cosines.map(|mu| table.shares(eta, mu).loss);
-    let mean = table.mean_shares(eta).loss;
+fn returned(sides: &Sides, cosines: [Between; 2]) -> f64 {
+    let [i, o] = cosines.map(|mu| sides.here.shares(mu).loss);
+    let mean = sides.here.mean_loss();
     if mean > 0.0 {
-        (1.0 - table.returned_through(eta)) * i * o / mean * FRAC_1_PI
+        (1.0 - sides.through) * i * o / mean * FRAC_1_PI
     } else {
         0.0
     }

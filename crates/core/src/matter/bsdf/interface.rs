@@ -4,12 +4,11 @@
 use std::f64::consts::FRAC_1_PI;
 
 use super::lambert::above;
-use super::{choose_lane, happens, Ratios};
-use crate::math::{DVec2, DVec3};
-use crate::matter::albedo::{AlbedoTable, Between};
+use super::{happens, Ratios, Rough};
+use crate::math::DVec3;
+use crate::matter::albedo::{AlbedoTable, Between, Side, Sides};
 use crate::matter::fresnel::{dielectric_reflectance, reflect, refract};
 use crate::matter::microfacet::{masking_of_reflection, masking_of_transmission};
-use crate::sampling::cosine_hemisphere;
 use crate::spectrum::SampledSpectrum;
 
 /// A lane whose index ratio is nearer to 1 is held off at this distance on a rough surface: facets
@@ -23,12 +22,12 @@ const LEAST_CONTRAST: f64 = 1e-6;
 #[derive(Clone, Copy, Debug)]
 pub struct Interface<'a> {
     ratios: Ratios,
-    table: Option<&'a AlbedoTable>,
+    rough: Option<Rough<'a>>,
 }
 
 /// A pair of directions on a rough boundary, and what does not depend on η.
 struct Pair<'a> {
-    table: &'a AlbedoTable,
+    rough: Rough<'a>,
     wi: DVec3,
     wo: DVec3,
     lambda_i: f64,
@@ -38,7 +37,7 @@ struct Pair<'a> {
 
 /// The facet that joins two directions.
 struct Joint {
-    /// The reflectance of the facet.
+    /// The share of the light that the facet sends on this way.
     f: f64,
     /// The density of that facet among those seen, per sr of wo.
     visible: f64,
@@ -55,15 +54,16 @@ impl<'a> Interface<'a> {
             }
         };
         let eta = if roughness.is_some() { eta.map(held_off) } else { eta };
-        Self { ratios: Ratios::new(eta), table: roughness }
+        let ratios = Ratios::new(eta);
+        Self { ratios, rough: roughness.map(|table| Rough::new(table, &ratios)) }
     }
 
     pub(super) fn is_rough(&self) -> bool {
-        self.table.is_some()
+        self.rough.is_some()
     }
 
     pub(super) fn mirror(&self, cos_i: f64) -> Option<SampledSpectrum> {
-        self.table.is_none().then(|| self.ratios.map(|eta| dielectric_reflectance(cos_i, eta)))
+        self.rough.is_none().then(|| self.ratios.map(|eta| dielectric_reflectance(cos_i, eta)))
     }
 
     pub(super) fn eval(&self, wi: DVec3, wo: DVec3) -> SampledSpectrum {
@@ -79,22 +79,27 @@ impl<'a> Interface<'a> {
             return 0.0;
         };
         self.ratios.mean(lanes, |eta| {
-            let loss = pair.table.shares(eta, pair.mu_i).loss;
-            let through = pair.table.returned_through(eta);
-            let side = if wo.z > 0.0 { 1.0 - through } else { through };
-            (1.0 - loss) * pair.single(eta) + loss * side * wo.z.abs() * FRAC_1_PI
+            let sides = pair.rough.sides(eta);
+            let loss = sides.here.shares(pair.mu_i).loss;
+            let (chance, side) = pair.returned_to(&sides);
+            let lobe = pair.rough.table.lobe_density(side, pair.mu_o) * wo.z.abs() * FRAC_1_PI;
+            (1.0 - loss) * pair.single(eta) + loss * chance * lobe
         })
     }
 
     pub(super) fn sample(&self, wi: DVec3, lanes: &SampledSpectrum, u: [f64; 3]) -> Option<DVec3> {
-        let table = self.table?;
+        let rough = self.rough?;
+        let table = rough.table;
         let mut choice = u[2];
-        let lane = if self.ratios.is_dispersive { choose_lane(lanes, &mut choice) } else { 0 };
-        let eta = self.ratios.eta.0[lane];
-        let loss = table.shares(eta, table.between_cosines(wi.z)).loss;
+        let eta = self.ratios.choose(lanes, &mut choice);
+        let sides = rough.sides(eta);
+        let loss = sides.here.shares(table.between_cosines(wi.z)).loss;
         if happens(loss, &mut choice) {
-            let wo = above(cosine_hemisphere(DVec2::new(u[0], u[1])))?;
-            return Some(if happens(table.returned_through(eta), &mut choice) { -wo } else { wo });
+            return if happens(sides.through, &mut choice) {
+                above(table.sample_lobe(sides.there, [u[0], u[1]])).map(|wo| -wo)
+            } else {
+                above(table.sample_lobe(sides.here, [u[0], u[1]]))
+            };
         }
         let h = table.ggx().visible_normal(wi, [u[0], u[1]]);
         if happens(dielectric_reflectance(wi.dot(h), eta), &mut choice) {
@@ -114,9 +119,10 @@ impl<'a> Interface<'a> {
     }
 
     fn pair(&self, wi: DVec3, wo: DVec3) -> Option<Pair<'a>> {
-        let table = self.table.filter(|_| wi.z > 0.0 && wo.z != 0.0)?;
+        let rough = self.rough.filter(|_| wi.z > 0.0 && wo.z != 0.0)?;
+        let table = rough.table;
         Some(Pair {
-            table,
+            rough,
             wi,
             wo,
             lambda_i: table.ggx().lambda(wi),
@@ -126,9 +132,9 @@ impl<'a> Interface<'a> {
     }
 }
 
-impl Pair<'_> {
+impl<'a> Pair<'a> {
     fn masking(&self) -> f64 {
-        let lambda_o = self.table.ggx().lambda(self.wo);
+        let lambda_o = self.rough.table.ggx().lambda(self.wo);
         if self.wo.z > 0.0 {
             masking_of_reflection(self.lambda_i, lambda_o)
         } else {
@@ -138,15 +144,17 @@ impl Pair<'_> {
 
     /// One facet's share of the light, before other facets hide it, per sr of wo.
     fn single(&self, eta: f64) -> f64 {
-        let joint = if self.wo.z > 0.0 { self.mirrored(eta) } else { self.refracted(eta) };
+        let joint =
+            if self.wo.z > 0.0 { Some(self.mirrored(eta)) } else { self.refracted(eta) };
         joint.map_or(0.0, |joint| joint.f * joint.visible)
     }
 
-    fn mirrored(&self, eta: f64) -> Option<Joint> {
+    fn mirrored(&self, eta: f64) -> Joint {
         let h = (self.wi + self.wo).normalize();
         let cos_i = self.wi.dot(h);
-        let visible = self.table.ggx().visible_density(self.wi, h, self.lambda_i) / (4.0 * cos_i);
-        Some(Joint { f: dielectric_reflectance(cos_i, eta), visible })
+        let visible =
+            self.rough.table.ggx().visible_density(self.wi, h, self.lambda_i) / (4.0 * cos_i);
+        Joint { f: dielectric_reflectance(cos_i, eta), visible }
     }
 
     /// Walter et al., eqs. (16), (17) and (21): dωₕ/dωₒ = η²·|wo·h|/(wi·h + η·wo·h)².
@@ -158,23 +166,29 @@ impl Pair<'_> {
         if !(cos_i > 0.0 && cos_o < 0.0) {
             return None;
         }
-        let seen = self.table.ggx().visible_density(self.wi, h, self.lambda_i);
+        let seen = self.rough.table.ggx().visible_density(self.wi, h, self.lambda_i);
         let visible = seen * eta * eta * -cos_o / length2;
         Some(Joint { f: 1.0 - dielectric_reflectance(cos_i, eta), visible })
     }
 
-    /// The light that meets more than one facet, spread evenly but for the losses.
+    /// The share of the lost light that goes to wo's side, and that side.
+    fn returned_to(&self, sides: &Sides<'a>) -> (f64, Side<'a>) {
+        if self.wo.z > 0.0 {
+            (1.0 - sides.through, sides.here)
+        } else {
+            (sides.through, sides.there)
+        }
+    }
+
+    /// The light that meets more than one facet.
     fn further(&self, eta: f64) -> f64 {
-        let table = self.table;
-        let lost = table.shares(eta, self.mu_i).loss;
-        let through = table.returned_through(eta);
-        let (share, eta) =
-            if self.wo.z > 0.0 { (1.0 - through, eta) } else { (through, 1.0 / eta) };
-        let mean = table.mean_shares(eta).loss;
+        let sides = self.rough.sides(eta);
+        let lost = sides.here.shares(self.mu_i).loss;
+        let (share, side) = self.returned_to(&sides);
+        let mean = side.mean_loss();
         if mean <= 0.0 {
             return 0.0;
         }
-        let spread = table.shares(eta, self.mu_o).loss * self.wo.z.abs() / mean;
-        share * lost * spread * FRAC_1_PI
+        share * lost * side.shares(self.mu_o).loss / mean * self.wo.z.abs() * FRAC_1_PI
     }
 }

@@ -22,7 +22,10 @@ pub use interface::Interface;
 pub use lambert::{Diffuse, Transmitter};
 pub use reflector::{Facet, LacqueredMetal, Reflector};
 
-use super::albedo::AlbedoTable;
+#[cfg(test)]
+pub(super) mod tests;
+
+use super::albedo::{AlbedoTable, Sides};
 use crate::math::DVec3;
 use crate::spectrum::{SampledSpectrum, LANES};
 
@@ -107,8 +110,8 @@ impl<'a> Bsdf<'a> {
         }
     }
 
-    /// The directional albedo ∫ eval dωₒ per lane: exact but for rough reflectors, whose facets'
-    /// mean reflectance is taken at the angle of incidence. Zero without anything but a mirror.
+    /// The directional albedo ∫ eval dωₒ per lane: an estimate for rough reflectors,
+    /// which takes their facets at the mean cosine of incidence. Zero without anything but a mirror.
     pub fn albedo(&self, wi: DVec3) -> SampledSpectrum {
         match self {
             Self::Diffuse(diffuse) => diffuse.albedo(),
@@ -148,6 +151,31 @@ impl Ratios {
         } else {
             f(self.eta.0[0])
         }
+    }
+
+    /// The η of a lane that is chosen by its probability.
+    fn choose(&self, lanes: &SampledSpectrum, u: &mut f64) -> f64 {
+        let lane = if self.is_dispersive { choose_lane(lanes, u) } else { 0 };
+        self.eta.0[lane]
+    }
+}
+
+/// What a rough dielectric surface knows of its facets.
+#[derive(Clone, Copy, Debug)]
+struct Rough<'a> {
+    table: &'a AlbedoTable,
+    /// Its sides where all lanes share them.
+    shared: Option<Sides<'a>>,
+}
+
+impl<'a> Rough<'a> {
+    fn new(table: &'a AlbedoTable, ratios: &Ratios) -> Self {
+        let shared = (!ratios.is_dispersive).then(|| table.sides(ratios.eta.0[0]));
+        Self { table, shared }
+    }
+
+    fn sides(&self, eta: f64) -> Sides<'a> {
+        self.shared.unwrap_or_else(|| self.table.sides(eta))
     }
 }
 

@@ -5,12 +5,11 @@ use std::f64::consts::FRAC_1_PI;
 
 use super::happens;
 use super::lambert::above;
-use crate::math::{DVec2, DVec3};
+use crate::math::DVec3;
 use crate::matter::albedo::AlbedoTable;
 use crate::matter::fresnel::{conductor_reflectance, reflect};
 use crate::matter::lacquer::SampledLacquer;
 use crate::matter::microfacet::masking_of_reflection;
-use crate::sampling::cosine_hemisphere;
 use crate::spectrum::SampledSpectrum;
 
 /// What one facet reflects.
@@ -121,14 +120,15 @@ impl<'a> Reflector<'a> {
         let (ggx, h) = (rough.table.ggx(), (wi + wo).normalize());
         let single = ggx.visible_density(wi, h, ggx.lambda(wi)) / (4.0 * wi.dot(h));
         let loss = rough.loss(wi.z);
-        (1.0 - loss) * single + loss * wo.z * FRAC_1_PI
+        let lobe = rough.table.reflector_density(rough.table.between_cosines(wo.z));
+        (1.0 - loss) * single + loss * lobe * wo.z * FRAC_1_PI
     }
 
     pub(super) fn sample(&self, wi: DVec3, u: [f64; 3]) -> Option<DVec3> {
         let rough = self.rough?;
         let mut choice = u[2];
         if happens(rough.loss(wi.z), &mut choice) {
-            return above(cosine_hemisphere(DVec2::new(u[0], u[1])));
+            return above(rough.table.sample_reflector_lobe([u[0], u[1]]));
         }
         let h = rough.table.ggx().visible_normal(wi, [u[0], u[1]]);
         above(reflect(wi, h))
@@ -138,9 +138,11 @@ impl<'a> Reflector<'a> {
         let Some(rough) = self.rough.filter(|_| wi.z > 0.0) else {
             return SampledSpectrum::ZERO;
         };
-        let loss = rough.loss(wi.z);
+        let mu = rough.table.between_cosines(wi.z);
+        let loss = rough.table.reflector_loss(mu);
         let lost = std::f64::consts::PI * rough.table.mean_reflector_loss() * loss;
-        self.facet.reflectance(wi.z) * (1.0 - loss) + rough.further * lost
+        let facet = self.facet.reflectance(rough.table.incidence(mu));
+        facet * (1.0 - loss) + rough.further * lost
     }
 }
 

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0 OR MIT
+//! Furnaces: what does not absorb gives back all light.
+
+use std::ops::Range;
+
+use super::*;
+
+/// ∫ eval dωₒ per lane, by the mean of eval/pdf over a lattice of the sampler's numbers.
+fn albedo_of(
+    bsdf: &Bsdf,
+    wi: DVec3,
+    lanes: &SampledSpectrum,
+    points: Range<usize>,
+) -> SampledSpectrum {
+    // The powers of the root of x⁴ = x + 1: an even lattice in three dimensions.
+    const STEP: [f64; 3] =
+        [0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_2];
+    let mut sum = SampledSpectrum::ZERO;
+    let share = 1.0 / points.len() as f64;
+    for i in points {
+        let u = STEP.map(|step| (0.5 + i as f64 * step).fract());
+        if let Some(wo) = bsdf.sample(wi, lanes, u) {
+            sum += bsdf.eval(wi, wo) * (1.0 / bsdf.pdf(wi, wo, lanes));
+        }
+    }
+    sum * share
+}
+
+/// The mean albedo of light from everywhere on one side: what a furnace of many bounces sees.
+fn mean_albedo(bsdf: &Bsdf) -> f64 {
+    const DIRECTIONS: usize = 400;
+    const POINTS: usize = 700;
+    let sum: f64 = (0..DIRECTIONS)
+        .map(|i| {
+            let cos = ((i as f64 + 0.5) / DIRECTIONS as f64).sqrt();
+            let points = i * POINTS..(i + 1) * POINTS;
+            albedo_of(bsdf, direction(cos, 0.3), &even_lanes(), points).0[0]
+        })
+        .sum();
+    sum / DIRECTIONS as f64
+}
+
+#[test]
+fn rough_mirrors_that_absorb_nothing_reflect_all() {
+    for alpha in [0.001, 0.01, 0.1, 0.3, 0.6, 1.0] {
+        let table = AlbedoTable::new(alpha).unwrap();
+        let facet = Facet::Measured(SampledSpectrum::ONE);
+        let mirror = Bsdf::Reflector(Reflector::new(facet, Some(&table)));
+        for cos in [1.0, 0.6, 0.3, 0.1, 0.03] {
+            let albedo = albedo_of(&mirror, direction(cos, 0.3), &even_lanes(), 0..60_000).0[0];
+            assert!((albedo - 1.0).abs() < 1e-3, "{alpha} {cos}: {albedo}");
+            assert!((mirror.albedo(direction(cos, 0.3)).0[0] - 1.0).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn rough_glass_loses_nothing_from_either_side() {
+    for alpha in [0.001, 0.05, 0.3, 1.0] {
+        let table = AlbedoTable::new(alpha).unwrap();
+        for eta in [1.0 / 1.7, 0.94, 1.063, 1.49, 1.7] {
+            let glass = Bsdf::interface(SampledSpectrum::splat(eta), Some(&table));
+            let albedo = mean_albedo(&glass);
+            assert!((albedo - 1.0).abs() < 1e-3, "{alpha} {eta}: {albedo}");
+        }
+    }
+}
+
+#[test]
+fn dispersive_rough_glass_loses_nothing_on_any_lane() {
+    let table = AlbedoTable::new(0.2).unwrap();
+    for eta in [1.5, 1.0 / 1.5] {
+        let glass = Bsdf::interface(dispersive(eta), Some(&table));
+        // Lanes of other η than the steering one see tails of its lobe: noise, but no bias.
+        for (lanes, noise) in [(even_lanes(), 0.02), (uneven_lanes(), 0.05)] {
+            let albedo = albedo_of(&glass, direction(0.7, 0.0), &lanes, 0..100_000);
+            for (j, lane) in albedo.0.iter().enumerate() {
+                assert!((lane - 1.0).abs() < noise, "{eta}, lane {j}: {lane}");
+            }
+            let mean = albedo.dot(lanes);
+            assert!((mean - 1.0).abs() < 8e-3, "{eta}: {mean}");
+        }
+    }
+}
+
+#[test]
+fn a_white_base_under_a_rough_coat_gives_back_all_light() {
+    for alpha in [0.001, 0.1, 0.5, 1.0] {
+        let table = AlbedoTable::new(alpha).unwrap();
+        for eta in [1.0 / 1.2, 1.49, 1.7] {
+            let ratio = SampledSpectrum::splat(eta);
+            let coat = Bsdf::Glossy(Glossy::new(ratio, SampledSpectrum::ONE, Some(&table)));
+            let albedo = mean_albedo(&coat);
+            // Below η = 1 a table blurs the step of R(µ) at the critical angle.
+            let bound = if eta < 1.0 { 6e-3 } else { 1e-3 };
+            assert!((albedo - 1.0).abs() < bound, "{alpha} {eta}: {albedo}");
+        }
+    }
+}
+
+#[test]
+fn a_rough_metals_albedo_is_near_the_integral_of_its_answer_and_below_one() {
+    let lanes = even_lanes();
+    for alpha in [0.05, 0.3, 1.0] {
+        let table = AlbedoTable::new(alpha).unwrap();
+        for facet in [aluminium(), lacquered()] {
+            let metal = Bsdf::Reflector(Reflector::new(facet, Some(&table)));
+            for cos in [1.0, 0.5, 0.1] {
+                let wi = direction(cos, 0.3);
+                let (stated, found) = (metal.albedo(wi), albedo_of(&metal, wi, &lanes, 0..20_000));
+                for (a, b) in stated.0.iter().zip(found.0) {
+                    assert!(b < 1.0 && (a - b).abs() < 0.05, "{alpha} {cos}: {a} {b}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn speed() {
+    let table = AlbedoTable::new(0.3).unwrap();
+    let lanes = even_lanes();
+    for (name, bsdf) in [
+        ("metal", Bsdf::Reflector(Reflector::new(aluminium(), Some(&table)))),
+        ("lacquered", Bsdf::Reflector(Reflector::new(lacquered(), Some(&table)))),
+        ("glossy", Bsdf::Glossy(Glossy::new(SampledSpectrum::splat(1.5), rising(0.1, 0.5), Some(&table)))),
+        ("glossy dispersive", Bsdf::Glossy(Glossy::new(dispersive(1.5), rising(0.1, 0.5), Some(&table)))),
+        ("glossy smooth", Bsdf::Glossy(Glossy::new(dispersive(1.5), rising(0.1, 0.5), None))),
+        ("glass", Bsdf::interface(SampledSpectrum::splat(1.5), Some(&table))),
+        ("dispersive", Bsdf::interface(dispersive(1.5), Some(&table))),
+    ] {
+        for i in 0..2 {
+            let mut numbers = Numbers(3);
+            let n = 100_000;
+            let t = std::time::Instant::now();
+            let mut wos = Vec::new();
+            for _ in 0..n {
+                let wi = direction(0.1 + 0.9 * numbers.next(), 0.0);
+                let u = [numbers.next(), numbers.next(), numbers.next()];
+                if let Some(wo) = bsdf.sample(wi, &lanes, u) { wos.push((wi, wo)); }
+            }
+            let a = t.elapsed().as_nanos() / n;
+            let t = std::time::Instant::now();
+            let mut sum = SampledSpectrum::ZERO;
+            for (wi, wo) in &wos { sum += bsdf.eval(*wi, *wo); }
+            let b = t.elapsed().as_nanos() / wos.len() as u128;
+            let t = std::time::Instant::now();
+            let mut p = 0.0;
+            for (wi, wo) in &wos { p += bsdf.pdf(*wi, *wo, &lanes); }
+            let c = t.elapsed().as_nanos() / wos.len() as u128;
+            if i == 1 { println!("SPEED {name}: sample {a} eval {b} pdf {c} ns ({:.1} {p:.1})", sum.0[0]); }
+        }
+    }
+    let t = std::time::Instant::now();
+    let mut s = 0.0;
+    for i in 0..100_000 { s += 1e-9 * i as f64; let m = Reflector::new(aluminium(), Some(&table)); s += std::hint::black_box(m).albedo(direction(0.5, 0.0)).0[0]; }
+    println!("SPEED build+albedo metal {} ns {s}", t.elapsed().as_nanos() / 100_000);
+    let t = std::time::Instant::now();
+    for _ in 0..100_000 { std::hint::black_box(Bsdf::interface(std::hint::black_box(dispersive(1.5)), Some(&table))); }
+    println!("SPEED build interface {} ns", t.elapsed().as_nanos() / 100_000);
+    let t = std::time::Instant::now();
+    for _ in 0..100_000 { std::hint::black_box(Glossy::new(std::hint::black_box(dispersive(1.5)), rising(0.1, 0.5), None)); }
+    println!("SPEED build glossy smooth {} ns", t.elapsed().as_nanos() / 100_000);
+    let t = std::time::Instant::now();
+    let mut tables = crate::matter::AlbedoTables::default();
+    std::hint::black_box(tables.of(0.2).unwrap());
+    println!("SPEED table {:?}", t.elapsed());
+}

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0 OR MIT
+//! Every sampler follows its density.
+
+use super::chi_square::deviate;
+use super::*;
+use crate::matter::{dielectric_reflectance, reflect, refract};
+
+/// Above this normal deviate a sampler is wrong: Šidák's level for some 200 tests that together
+/// err once in a hundred runs; the seeds are fixed.
+const LIMIT: f64 = 3.9;
+
+const COSINES: [f64; 4] = [0.99, 0.6, 0.2, 0.02];
+
+/// The last direction before grazing at which a narrow lobe still clears the horizon.
+fn cosines(alpha: f64) -> impl Iterator<Item = f64> {
+    COSINES.into_iter().map(move |cos| if alpha < 0.05 { cos.max(0.2) } else { cos })
+}
+
+/// Test both sides apart, each round its own peak.
+fn check(name: &str, bsdf: &Bsdf, wi: DVec3, lanes: &SampledSpectrum, peaks: [(DVec3, f64); 2]) {
+    for (side, (axis, epsilon)) in [1.0, -1.0].into_iter().zip(peaks) {
+        let is_counted = |wo: DVec3| wo.z * side > 0.0;
+        let pdf = |wo: DVec3| bsdf.pdf(wi, wo, lanes);
+        let sample = |u| bsdf.sample(wi, lanes, u);
+        let z = deviate(Dome::new(axis, epsilon), &is_counted, &pdf, &sample, wi.z.to_bits());
+        assert!(z < LIMIT, "{name}, wi.z = {}, side {side}: {z:.2} sigma", wi.z);
+    }
+}
+
+/// The grid for a lobe of this width: round its peak if it is narrow, else with the horizon on a
+/// line of the grid.
+fn lobe(peak: DVec3, alpha: f64, width: f64) -> (DVec3, f64) {
+    if alpha < 0.3 {
+        (peak, width)
+    } else {
+        evenly(peak.z.signum())
+    }
+}
+
+fn evenly(axis: f64) -> (DVec3, f64) {
+    (DVec3::Z * axis, 1.0)
+}
+
+#[test]
+fn matt_surfaces_are_sampled_by_their_density() {
+    let rho = rising(0.1, 0.6);
+    let sheet = Bsdf::Transmitter(Transmitter::new(rho, rising(0.4, 0.0)));
+    for cos in COSINES {
+        let wi = direction(cos, 1.0);
+        for lanes in [even_lanes(), uneven_lanes()] {
+            check("sheet", &sheet, wi, &lanes, [evenly(1.0), evenly(-1.0)]);
+        }
+        let matt = Bsdf::Diffuse(Diffuse::new(rho));
+        check("matt", &matt, wi, &even_lanes(), [evenly(1.0), evenly(-1.0)]);
+        let coat = Bsdf::Glossy(Glossy::new(dispersive(1.5), rho, None));
+        check("glossy", &coat, wi, &even_lanes(), [evenly(1.0), evenly(-1.0)]);
+    }
+}
+
+#[test]
+fn rough_reflectors_are_sampled_by_their_density() {
+    for alpha in [0.01, 0.1, 0.4, 1.0] {
+        let table = AlbedoTable::new(alpha).unwrap();
+        for cos in cosines(alpha) {
+            let wi = direction(cos, 2.0);
+            let peak = lobe(reflect(wi, DVec3::Z), alpha, 2.0 * alpha * alpha);
+            for facet in [aluminium(), lacquered()] {
+                let metal = Bsdf::Reflector(Reflector::new(facet, Some(&table)));
+                let name = format!("metal {alpha}");
+                check(&name, &metal, wi, &even_lanes(), [peak, evenly(-1.0)]);
+            }
+        }
+    }
+}
+
+#[test]
+fn rough_coats_are_sampled_by_their_density() {
+    for alpha in [0.01, 0.3, 1.0] {
+        let table = AlbedoTable::new(alpha).unwrap();
+        for eta in [SampledSpectrum::splat(1.5), dispersive(1.5)] {
+            let coat = Bsdf::Glossy(Glossy::new(eta, rising(0.05, 0.5), Some(&table)));
+            for cos in cosines(alpha) {
+                let wi = direction(cos, 2.0);
+                let peak = lobe(reflect(wi, DVec3::Z), alpha, 2.0 * alpha * alpha);
+                let name = format!("coat {alpha}");
+                check(&name, &coat, wi, &uneven_lanes(), [peak, evenly(-1.0)]);
+            }
+        }
+    }
+}
+
+#[test]
+fn rough_glass_is_sampled_by_its_density_from_both_sides() {
+    for alpha in [0.01, 0.1, 0.4, 1.0] {
+        let table = AlbedoTable::new(alpha).unwrap();
+        for eta in [1.5, 1.0 / 1.5, 1.06] {
+            for (etas, lanes) in
+                [(SampledSpectrum::splat(eta), even_lanes()), (dispersive(eta), uneven_lanes())]
+            {
+                let glass = Bsdf::interface(etas, Some(&table));
+                for cos in cosines(alpha) {
+                    let wi = direction(cos, 0.5);
+                    let through = refract(wi, DVec3::Z, eta).unwrap_or(-DVec3::Z);
+                    let width = 2.0 * alpha * alpha;
+                    let across = width * (1.0 - 1.0 / eta).powi(2) + 1e-4;
+                    let mirror = lobe(reflect(wi, DVec3::Z), alpha, width);
+                    let peaks = [mirror, lobe(through, alpha, across)];
+                    check(&format!("glass {alpha} {eta}"), &glass, wi, &lanes, peaks);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn smooth_surfaces_have_nothing_to_sample() {
+    let (wi, lanes) = (direction(0.6, 0.0), even_lanes());
+    for smooth in
+        [Bsdf::Reflector(Reflector::new(aluminium(), None)), Bsdf::interface(dispersive(1.5), None)]
+    {
+        assert!(!smooth.scatters());
+        assert_eq!(smooth.sample(wi, &lanes, [0.2, 0.3, 0.4]), None);
+        assert_eq!(smooth.pdf(wi, reflect(wi, DVec3::Z), &lanes), 0.0);
+        assert_eq!(smooth.eval(wi, reflect(wi, DVec3::Z)), SampledSpectrum::ZERO);
+        assert_eq!(smooth.albedo(wi), SampledSpectrum::ZERO);
+    }
+    let f = Bsdf::interface(dispersive(1.5), None).mirror(0.6).unwrap();
+    assert_eq!(f.0[3], dielectric_reflectance(0.6, dispersive(1.5).0[3]));
+}
