@@ -15,29 +15,44 @@ Node: TypeAlias = Mapping[str, Any]
 #: The sections of the page; in each, models of the schema under the titles they are shown with.
 #: A model without a title is titled by its own ``kind``.
 _SECTIONS: dict[str, dict[str, str]] = {
-    "camera": {"PinholeCamera": "", "OrthographicCamera": ""},
+    "camera": {"PinholeCamera": "", "ThinLensCamera": "", "OrthographicCamera": ""},
     "image": {"ImageSettings": "`[image]`"},
     "display": {
         "DisplaySettings": "`[display]`",
         "CustomDisplay": "`space = { primaries_xy, white_xy, gamma }`",
         "IccDisplay": "`space = { icc }`",
     },
+    "path": {"PathSettings": "`[path]`"},
     "hall": {"HallSettings": "`[hall]`"},
     "ambient": {"Ambient": "`[ambient]`"},
     "background": {
         "ConstantBackground": "",
         "GradientBackground": "",
         "StudioBackground": "",
+        "SkyBackground": "",
+        "ImageBackground": "",
         "SoftBox": "`[[background.soft_boxes]]`",
+        "Sun": "`[[background.suns]]`",
     },
     "lights": {"PointLight": "", "DirectionalLight": "", "SphereLight": ""},
     "objects": dict.fromkeys(
         ["MeshObject", "Sphere", "Tetrahedron", "Box", "Cylinder", "Cone", "Disc", "Plane"], ""
     ),
     "transform": {"Transform": "`transform = { .. }`"},
+    "emission": {
+        "Emission": "`[objects.emission]`",
+        "CosineDistribution": "`distribution = { cosine_exponent }`",
+        "FileDistribution": "`distribution = { file, axis, up }`",
+    },
     "materials": dict.fromkeys(
-        ["Dielectric", "Conductor", "Mirror", "Diffuse", "Checker", "Glossy"], ""
+        ["Dielectric", "Conductor", "Mirror", "Diffuse", "DiffuseTransmitter", "Checker", "Glossy"],
+        "",
     ),
+    "finish": {
+        "Texture": "`texture = { .. }`",
+        "Lacquer": "`lacquer = { .. }`",
+        "Scattering": "`scattering = { .. }`",
+    },
     "hall-terms": {"HallTerms": "`hall = { .. }`"},
     "spectra": {
         "TabulatedSpectrum": "`{ wavelengths_nm, values }`",
@@ -71,8 +86,9 @@ _SECTIONS: dict[str, dict[str, str]] = {
 
 #: Keys that a section tells once, in its text above the tables.
 _TOLD_ABOVE = {
-    "objects": {"name", "material", "priority", "transform"},
-    "materials": {"description", "references", "licence", "hall"},
+    "background": {"group", "suns"},
+    "objects": {"name", "material", "priority", "transform", "emission"},
+    "materials": {"description", "references", "licence", "hall", "roughness", "texture"},
     "lights": {"name", "source", "luminance_cd_m2"},
     "spectra": {"interpolation", "extension", "scale"},
     "index": {"interpolation", "extension", "range_nm"},
@@ -90,6 +106,10 @@ _FORMS = {
     "SoftBox": "soft box",
     "Radiator": "`{ source, luminance_cd_m2 }`",
     "CustomDisplay": "a table",
+    "CosineDistribution": "`{ cosine_exponent }`",
+    "FileDistribution": "`{ file, axis, up }`",
+    "Lacquer": "[a table](#finish)",
+    "Scattering": "[a table](#finish)",
 }
 
 _PLAIN = {"number": "number", "integer": "whole number", "string": "text", "boolean": "true, false"}
@@ -176,5 +196,6 @@ def _limits(node: Node) -> str:
     if low is not None and high is not None:
         return f", {low:.7g} to {high:.7g}"
     if above is not None:
-        return f", above {above:g}" + ("" if below is None else f", below {below:g}")
+        end = "" if below is None else f", below {below:g}"
+        return f", above {above:g}" + (end if high is None else f", at most {high:g}")
     return "" if low is None else f", {low:g} or more"

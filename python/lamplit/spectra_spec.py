@@ -228,6 +228,13 @@ def _within_unity(spec: AnySpectrum) -> AnySpectrum:
     return spec
 
 
+def _not_negative(spec: AnySpectrum) -> AnySpectrum:
+    low = float(np.min(spec.point_values()))
+    if low < 0:
+        raise spec_fault(f"values of 0 and above are expected, and {low:g} is below 0")
+    return spec
+
+
 def _emits(spec: AnySource) -> AnySource:
     if isinstance(spec, (TabulatedSpectrum, CsvSpectrum, SpdxSpectrum)):
         values = spec.point_values()
@@ -274,5 +281,7 @@ _SourceUnion: TypeAlias = Annotated[
 SpectrumSpec: TypeAlias = _SpectrumUnion
 #: A spectral function whose values lie from 0 to 1.
 FractionSpec: TypeAlias = Annotated[_SpectrumUnion, AfterValidator(_within_unity)]
+#: A spectral function whose values are 0 and above.
+CoefficientSpec: TypeAlias = Annotated[_SpectrumUnion, AfterValidator(_not_negative)]
 #: The spectral distribution of a light: values of 0 and above, in any unit.
 SourceSpec: TypeAlias = Annotated[_SourceUnion, AfterValidator(_emits)]

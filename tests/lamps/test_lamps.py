@@ -15,6 +15,11 @@ from scipy.spatial import cKDTree
 
 from lamplit.errors import LamplitError, OutputError
 from lamplit.lamps import lamp_names, lamp_parameters, write_lamp
+from lamplit.scene import load_scene
+from lamplit.scene.lighting import SphereLight
+from lamplit.scene.objects import Disc
+from lamplit.scene.shining import path_notices
+from lamplit.spectra_spec import NamedSource
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -201,6 +206,59 @@ def test_the_dies_have_the_colour_that_they_shine_in(
     assert (yellow > 5.0 * blue) == (source == "pc-amber-led")
     mask = {thing["name"]: thing["material"] for thing in scene["objects"]}["tray"]
     assert mask == "black-abs"
+
+
+@pytest.mark.parametrize("name", ["p21w", "led-array"])
+def test_a_lamp_shines_in_path_transport_only_where_it_is_lit(name: str, tmp_path: Path) -> None:
+    for lit in (False, True):
+        path = write_lamp(name, tmp_path, {"triangles": 4_000, "lit": lit})
+        scene = tomllib.loads(path.read_text())
+        assert scene["image"]["method"] == "path"
+        shining = [thing for thing in scene["objects"] if "emission" in thing]
+        assert bool(shining) == lit
+        assert any(light["kind"] == "sphere" for light in scene["lights"]) == lit
+
+
+def test_the_filament_gives_the_flux_of_a_p21w(tmp_path: Path) -> None:
+    scene = load_scene(write_lamp("p21w", tmp_path, {"triangles": 4_000, "lit": True}))
+    (filament,) = (thing for thing in scene.resolved_objects() if thing.emission is not None)
+    assert (filament.name, filament.kind) == ("filament", "mesh")
+    assert filament.emission is not None
+    assert (filament.emission.quantity, filament.emission.amount) == ("flux_lm", 460.0)
+    assert float(filament.emission.spectrum(560.0)) == 100.0
+
+
+@pytest.mark.parametrize(("cover", "source"), [("smoke", "pc-amber-led"), ("red", "red-led-624")])
+def test_each_die_shines_forward_in_its_own_spectrum(
+    cover: str, source: str, tmp_path: Path
+) -> None:
+    settings = {"triangles": 4_000, "lit": True, "cover_colour": cover, "die_size_mm": 0.8}
+    scene = load_scene(write_lamp("led-array", tmp_path, settings))
+    faces = [thing for thing in scene.objects if thing.emission is not None]
+    lights = {light.name: light for light in scene.lights}
+    assert len(faces) == 12
+    for face in faces:
+        assert isinstance(face, Disc)
+        assert (face.normal, face.radius_mm) == ((0.0, 0.0, 1.0), 0.4)
+        assert 0.0 < face.centre_mm[2] < 0.1
+        hall = lights[face.name]
+        assert isinstance(hall, SphereLight)
+        assert face.centre_mm[:2] == hall.centre_mm[:2]
+        assert face.emission is not None
+        assert face.emission.source == NamedSource(source) == hall.source
+        assert face.emission.group == "dies"
+    assert len({face.emission.flux_lm for face in faces if face.emission is not None}) == 1
+
+
+@pytest.mark.parametrize("name", lamp_names())
+def test_every_lamp_can_be_rendered_by_both_methods(name: str, tmp_path: Path) -> None:
+    """Its surroundings shine for path transport; a key light and ambient light for Hall's."""
+    scene = load_scene(write_lamp(name, tmp_path, {} if name == "paper" else {"triangles": 4_000}))
+    assert scene.image.method == ("hall" if name == "paper" else "path")
+    assert scene.lights
+    assert scene.ambient is not None
+    (notice,) = path_notices(scene)
+    assert "[ambient] and 1 of [[lights]]" in notice
 
 
 @pytest.mark.parametrize("name", lamp_names())

@@ -18,6 +18,7 @@ position_mm = [0.0, 0.0, 400.0]
 target_mm = [0.0, 0.0, 0.0]
 field_of_view_deg = 30.0
 [image]
+method = "hall"
 width = 32
 height = 20
 samples = 4

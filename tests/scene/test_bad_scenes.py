@@ -187,7 +187,7 @@ def test_the_scene_that_the_tests_spoil_is_sound(sound: Path) -> None:
             "no volume",
         ),
         # Text that is not TOML.
-        ("radius_mm = 10.0", "radius_mm = = 10.0", "line 34, column 13", "TOML"),
+        ("radius_mm = 10.0", "radius_mm = = 10.0", "line 35, column 13", "TOML"),
         ("radius_mm = 10.0", "radius_mm = 10.0\nradius_mm = 11.0", "line", "TOML"),
     ],
 )

@@ -25,6 +25,7 @@ def scene_of(objects: Sequence[Table], root: Path, **more: object) -> Scene:
             "target_mm": [0.0, 0.0, 0.0],
             "height_mm": 1000.0,
         },
+        "background": {"kind": "constant", "source": "D65", "luminance_cd_m2": 100.0},
         "objects": [
             {"name": f"body-{i}", "material": "bk7", **own} for i, own in enumerate(objects)
         ],
@@ -204,6 +205,7 @@ def test_what_nothing_uses_is_named(tmp_path: Path) -> None:
         materials={"paint": {"kind": "diffuse", "reflectance": 0.5}, "lens": {"library": "bk7"}},
         sources={"key": led, "fill": led, "copy": "D65"},
         ambient={"source": "key", "luminance_cd_m2": 1.0},
+        image={"method": "hall"},
     )
     found = [(f.level, f.subject, f.message) for f in check_scene(scene).findings]
     assert found == [

@@ -27,11 +27,13 @@ from lamplit.lamps.recipe import (
     mesh_object,
 )
 from lamplit.lamps.shells import Housing
-from lamplit.lamps.solids import Solid, cuboid, repeated
+from lamplit.lamps.solids import Floats, Solid, cuboid, repeated
 
 _BOARD_TOP_Z, _BOARD_BACK_Z = -2.5, -4.1
 _MARGIN_MM = 7.0
 _PMMA_INDEX = 1.49
+#: Flux of one die, in lm, of an indicator (True) and of a stop lamp: usual orders of size.
+_FLUX_LM = {True: 25.0, False: 10.0}
 #: Reflectances at `_BANDS_NM`, drawn by eye: ceramic, a bare red die, and silicone with a phosphor
 #: that turns blue into amber.
 _BANDS_NM = [380, 430, 480, 530, 580, 630, 680, 730]
@@ -66,7 +68,7 @@ class Parameters(LampParameters):
     die_size_mm: Annotated[float, Field(ge=0.3, le=1.4, description="side of the square dies")] = (
         1.0
     )
-    lit: Annotated[bool, Field(description="put a small light of its colour at each die")] = False
+    lit: Annotated[bool, Field(description="let each die shine, in its colour")] = False
     triangles: Triangles = 300_000
 
     @property
@@ -193,9 +195,24 @@ def _tables(p: Parameters, layout: _Layout) -> list[Table]:
         mesh_object("housing", "black-abs", crease_deg=40.0),
         mesh_object("packages", "package"),
         mesh_object("dies", "die"),
+        *([_face(p, k + 1, place, source) for k, place in enumerate(places)] if p.lit else []),
         Table("objects", _board(p), many=True),
         studio.table_top(ground, "black-abs", front_mm=1.5 * width),
     ]
+
+
+def _face(p: Parameters, number: int, place: Floats, source: str) -> Table:
+    """Return the round face, just above a die, that its light leaves by."""
+    values = {
+        "name": f"die-{number}",
+        "kind": "disc",
+        "centre_mm": np.add(place, (0.0, 0.0, 0.02)),
+        "normal": [0.0, 0.0, 1.0],
+        "radius_mm": 0.5 * p.die_size_mm,
+        "material": "die",
+        "emission": {"source": source, "flux_lm": _FLUX_LM[p.amber], "group": "dies"},
+    }
+    return Table("objects", values, many=True)
 
 
 def _board(p: Parameters) -> dict[str, Any]:

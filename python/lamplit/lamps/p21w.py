@@ -42,6 +42,8 @@ _SHARES = {
     "supports": 0.02,
 }
 _BEZEL_OFFSETS_MM = (-0.5, 6.3)
+#: Reference flux of a P21W at 13.5 V (UN R37, category P21W).
+_FLUX_LM = 460.0
 
 
 class Parameters(LampParameters):
@@ -75,7 +77,7 @@ class Parameters(LampParameters):
     bulb_glass_mm: Annotated[
         float, Field(ge=0.3, le=1.2, description="thickness of the envelope's glass")
     ] = 0.7
-    lit: Annotated[bool, Field(description="put a small light (illuminant A) at the filament")] = (
+    lit: Annotated[bool, Field(description="let the filament shine: 460 lm of illuminant A")] = (
         False
     )
     triangles: Triangles = 400_000
@@ -180,6 +182,7 @@ def _parts(p: Parameters, layout: _Layout) -> tuple[dict[str, Solid], float]:
 def _tables(p: Parameters, layout: _Layout, lens_crease: float) -> list[Table]:
     housing, middle = layout.housing, 0.5 * (layout.cover.apex_z + layout.housing.back_z)
     ground = -(layout.outline.half_height_mm + housing.outer_offset) - 0.5
+    glow = {"source": "A", "flux_lm": _FLUX_LM} if p.lit else None
     lamp_light = (
         [studio.sphere_light("filament", "A", 6_000.0, (0.0, 0.0, 0.0), 0.3)] if p.lit else []
     )
@@ -212,7 +215,7 @@ def _tables(p: Parameters, layout: _Layout, lens_crease: float) -> list[Table]:
         mesh_object("stem", "bulb-glass", crease_deg=40.0),
         mesh_object("cap", "nickel", crease_deg=40.0),
         mesh_object("supports", "nickel", crease_deg=40.0),
-        mesh_object("filament", "tungsten", crease_deg=60.0),
+        mesh_object("filament", "tungsten", crease_deg=60.0, emission=glow),
         studio.table_top(ground, "black-abs", front_mm=1.7 * size),
     ]
 

@@ -59,7 +59,7 @@ def build(parameters: Parameters) -> Lamp:
             distance_mm=9.0 * size,
             view_deg=22.0,
         ),
-        *studio.picture(white_luminance_cd_m2=1000.0, sampling="sobol"),
+        *studio.picture(white_luminance_cd_m2=1000.0, method="hall", sampling="sobol"),
         Table("ambient", {"source": "D65", "luminance_cd_m2": 120.0}),
         Table(
             "background",

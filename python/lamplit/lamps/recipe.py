@@ -58,12 +58,18 @@ class Lamp:
 
 
 def mesh_object(
-    name: str, material: str, *, crease_deg: float | None = None, comment: str = ""
+    name: str,
+    material: str,
+    *,
+    crease_deg: float | None = None,
+    emission: Mapping[str, TomlValue] | None = None,
+    comment: str = "",
 ) -> Table:
     """Return the object of the mesh ``<name>.ply``, shaded smoothly with a ``crease_deg``."""
+    light = {} if emission is None else {"emission": emission}
     shading = {} if crease_deg is None else {"smooth": True, "crease_deg": crease_deg}
     values = {"name": name, "kind": "mesh", "file": f"{name}.ply", "unit": "mm", **shading}
-    return Table("objects", {**values, "material": material}, comment, many=True)
+    return Table("objects", {**values, "material": material, **light}, comment, many=True)
 
 
 def lens_material(colour: LensColour) -> str:

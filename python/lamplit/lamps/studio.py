@@ -1,15 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0 OR MIT
-"""The photographer's half of an example scene: camera, picture, soft boxes, key light, floor."""
+"""The photographer's half of an example scene: camera, picture, soft boxes, key light, floor.
+
+Soft boxes and surroundings shine in both methods. Hall's matt surfaces do not see them, so a key
+light and ambient light stand for them there; path transport leaves these two out.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lamplit.lamps.recipe import Table
+from lamplit.lamps.recipe import Table, TomlValue
 
 Point: TypeAlias = Sequence[float] | NDArray[np.float64]
 
@@ -43,9 +47,13 @@ def camera(
     return Table("camera", values, comment)
 
 
-def picture(*, white_luminance_cd_m2: float, sampling: str = "grid") -> list[Table]:
-    """Return the image and display tables; Sobol ``sampling`` turns moiré into fine noise."""
-    image = {"width": 640, "height": 400, "samples": 16, "sampling": sampling}
+def picture(
+    *, white_luminance_cd_m2: float, method: Literal["path", "hall"] = "path", sampling: str = ""
+) -> list[Table]:
+    """Return the image and display tables; with "sobol", Hall's moiré turns into fine noise."""
+    image: dict[str, TomlValue] = {"method": method, "width": 640, "height": 400, "samples": 16}
+    if sampling:
+        image["sampling"] = sampling
     return [
         Table("image", image, "samples: per pixel"),
         Table(
@@ -75,7 +83,7 @@ def soft_box(
 def surroundings(zenith_cd_m2: float, nadir_cd_m2: float, ambient_cd_m2: float) -> list[Table]:
     """Return ambient light and a studio background, bright above and dim below."""
     return [
-        Table("ambient", {"source": "D65", "luminance_cd_m2": ambient_cd_m2}),
+        Table("ambient", {"source": "D65", "luminance_cd_m2": ambient_cd_m2}, "method hall"),
         Table(
             "background",
             {
@@ -89,7 +97,7 @@ def surroundings(zenith_cd_m2: float, nadir_cd_m2: float, ambient_cd_m2: float) 
 
 
 def point_light(name: str, source: str, luminance_cd_m2: float, position_mm: Point) -> Table:
-    """Return a point light; its luminance is that of a perfect reflector that faces it."""
+    """Return a point light of method hall: the luminance of a perfect reflector that faces it."""
     values = {
         "kind": "point",
         "name": name,
@@ -103,7 +111,7 @@ def point_light(name: str, source: str, luminance_cd_m2: float, position_mm: Poi
 def sphere_light(
     name: str, source: str, luminance_cd_m2: float, centre_mm: Point, radius_mm: float
 ) -> Table:
-    """Return a small luminous sphere."""
+    """Return a small luminous sphere of method hall."""
     values = {
         "kind": "sphere",
         "name": name,
@@ -131,5 +139,5 @@ def hall(contribution_limit: float) -> Table:
     return Table(
         "hall",
         {"max_depth": 12, "contribution_limit": contribution_limit},
-        "a ray that can add less than this share is not followed",
+        "method hall: a ray that can add less than this share is not followed",
     )

@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+from lamplit.materials.finish import Lacquer, Roughness, Scattering, Texture
 from lamplit.materials.library import material, material_names
 from lamplit.materials.models import (
     Checker,
     Conductor,
     Dielectric,
     Diffuse,
+    DiffuseTransmitter,
     Glossy,
     HallTerms,
     Material,
@@ -20,10 +22,15 @@ __all__ = [
     "Conductor",
     "Dielectric",
     "Diffuse",
+    "DiffuseTransmitter",
     "Glossy",
     "HallTerms",
+    "Lacquer",
     "Material",
     "Mirror",
+    "Roughness",
+    "Scattering",
+    "Texture",
     "material",
     "material_names",
 ]

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lamplit.materials.models import Checker, Conductor, Dielectric, Glossy, Material
-from lamplit.materials.optics import normal_reflectance, slab_transmittance
+from lamplit.materials.optics import lacquered_reflectance, normal_reflectance, slab_transmittance
 from lamplit.spectrum import Array, SpectralDistribution
 
 if TYPE_CHECKING:
@@ -32,12 +32,17 @@ def surface_reflectance(material: Material, wavelengths_nm: ArrayLike) -> Array:
     """Return the total reflectance of one surface at normal incidence.
 
     A glossy body adds what its matt base gives back to Fresnel's gloss (light that turns back
-    inside the surface is left out); a checker counts as the mean of its two squares.
+    inside the surface is left out); a checker counts as the mean of its two squares, and every
+    surface as smooth.
     """
     if isinstance(material, Dielectric):
         return normal_reflectance(material.index(wavelengths_nm))
     if isinstance(material, Conductor):
         n, k = material.index(wavelengths_nm), material.extinction(wavelengths_nm)
+        if material.lacquer is not None:
+            coat = material.lacquer.index(wavelengths_nm)
+            depth = material.lacquer.optical_depth(wavelengths_nm)
+            return lacquered_reflectance(coat, n, k, depth, factor=material.factor)
         return material.factor * normal_reflectance(n, k)
     if isinstance(material, Checker):
         both = material.reflectance_a_at(wavelengths_nm) + material.reflectance_b_at(wavelengths_nm)

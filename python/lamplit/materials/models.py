@@ -7,6 +7,7 @@ mirror      a mirror by its measured spectral reflectance
 diffuse     a matt surface by its spectral reflectance
 checker     a matt surface with squares of two reflectances
 glossy      an opaque body: Fresnel gloss over a matt base
+diffuse-transmitter  a thin matt sheet that light also comes through, such as paper
 
 Every evaluating method takes wavelengths in nm of any shape and returns float64 of that shape; it
 raises SpectrumError where the material's data end and do not say how to go on.
@@ -18,12 +19,19 @@ from typing import Annotated, ClassVar, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic_core import PydanticCustomError
 
+from lamplit.materials.finish import Lacquer, Roughness, Scattering, Texture, check_texture
 from lamplit.materials.index_spec import ComplexIndexSpec, IndexSpec
 from lamplit.materials.transmittance import TransmittanceSpec
 from lamplit.spectra_spec import FractionSpec, Number, Positive
-from lamplit.spectrum import Array
+from lamplit.spectrum import Array, SpectralDistribution
+
+#: Where a picture may lie, in nm.
+_CHECKED_NM = (200.0, 2500.0)
+#: Values of two tables that together should be 1 may miss it by this much.
+_ROUNDING = 1e-9
 
 _Weight: TypeAlias = Annotated[Number, Field(ge=0)]
 
@@ -70,13 +78,32 @@ class _Material(BaseModel):
         return terms.model_copy(update={"highlight_exponent": self.default_highlight_exponent})
 
 
-class Dielectric(_Material):
+class _Finished(_Material):
+    """A material whose surface may be rough; Hall's method sees it smooth."""
+
+    roughness: Roughness = Field(
+        default=0.0, description="α of GGX: 0 smooth, or 0.001 to 1 (path)"
+    )
+    texture: Texture | None = Field(
+        default=None, description="left out: all faces are alike"
+    )
+
+    @model_validator(mode="after")
+    def _is_rough_where_textured(self) -> _Finished:
+        check_texture(self.texture, self.roughness)
+        return self
+
+
+class Dielectric(_Finished):
     """Clear or dyed matter that light goes through: plastic, glass."""
 
     kind: Literal["dielectric"]
     refractive_index: IndexSpec = Field(description="n(λ)")
     internal_transmittance: TransmittanceSpec | None = Field(
         default=None, description="left out: perfectly clear"
+    )
+    scattering: Scattering | None = Field(
+        default=None, description="left out: no turbidity (path)"
     )
 
     def index(self, wavelengths_nm: ArrayLike) -> Array:
@@ -94,14 +121,15 @@ class Dielectric(_Material):
         return np.exp(-self.absorption_per_mm(wavelengths_nm) * thickness_mm)
 
 
-class Conductor(_Material):
+class Conductor(_Finished):
     """A metal by its complex index n + i k."""
 
     kind: Literal["conductor"]
     refractive_index: ComplexIndexSpec = Field(description="n(λ) and k(λ)")
     factor: Annotated[Number, Field(ge=0, le=1)] = Field(
-        default=1.0, description="times the reflectance: a lacquer's or a rough film's loss"
+        default=1.0, description="times the metal's reflectance: the loss of a film or of dust"
     )
+    lacquer: Lacquer | None = Field(default=None, description="a coat on the metal")
 
     def index(self, wavelengths_nm: ArrayLike) -> Array:
         """Return n(λ)."""
@@ -112,7 +140,7 @@ class Conductor(_Material):
         return self.refractive_index.extinction()(wavelengths_nm)
 
 
-class _Reflecting(_Material):
+class _Reflecting(BaseModel):
     reflectance: FractionSpec = Field(
         description="share of the light that comes back, by wavelength"
     )
@@ -122,13 +150,13 @@ class _Reflecting(_Material):
         return self.reflectance.distribution()(wavelengths_nm)
 
 
-class Mirror(_Reflecting):
+class Mirror(_Reflecting, _Finished):
     """A mirror by its measured reflectance, the same at every angle."""
 
     kind: Literal["mirror"]
 
 
-class Diffuse(_Reflecting):
+class Diffuse(_Reflecting, _Material):
     """A matt surface."""
 
     kind: Literal["diffuse"]
@@ -153,7 +181,7 @@ class Checker(_Material):
         return self.reflectance_b.distribution()(wavelengths_nm)
 
 
-class Glossy(_Reflecting):
+class Glossy(_Reflecting, _Finished):
     """An opaque body: what Fresnel does not reflect reaches a matt base."""
 
     kind: Literal["glossy"]
@@ -164,7 +192,45 @@ class Glossy(_Reflecting):
         return self.refractive_index.index()(wavelengths_nm)
 
 
+class DiffuseTransmitter(_Reflecting, _Material):
+    """A thin matt sheet: it gives light back, and lets light through to all sides."""
+
+    kind: Literal["diffuse-transmitter"]
+    transmittance: FractionSpec = Field(
+        description="share of the light that comes through, by wavelength"
+    )
+    default_highlight_exponent: ClassVar[float] = 1.0
+
+    @model_validator(mode="after")
+    def _gives_no_more_than_it_gets(self) -> DiffuseTransmitter:
+        back, through = self.reflectance.distribution(), self.transmittance.distribution()
+        nm = _points_of(back, through)
+        total = back(nm) + through(nm)
+        if (total > 1.0 + _ROUNDING).any():
+            at = int(np.argmax(total))
+            raise PydanticCustomError(
+                "gains_energy",
+                "reflectance and transmittance together are at most 1, and {total} at {nm} nm",
+                {"total": f"{total[at]:g}", "nm": f"{nm[at]:g}"},
+            )
+        return self
+
+    def transmittance_at(self, wavelengths_nm: ArrayLike) -> Array:
+        """Return the share that comes through, 0 to 1."""
+        return self.transmittance.distribution()(wavelengths_nm)
+
+
+def _points_of(*curves: SpectralDistribution) -> Array:
+    """Return every 0.5 nm, and the ends, of where all ``curves`` have values."""
+    bounded = [curve.domain_nm for curve in curves if curve.extension == "error"]
+    low = max([_CHECKED_NM[0], *(domain[0] for domain in bounded)])
+    high = min([_CHECKED_NM[1], *(domain[1] for domain in bounded)])
+    ends = [end for curve in curves for end in curve.domain_nm if low <= end <= high]
+    return np.append(np.arange(low, high, 0.5), ends)
+
+
 #: Any material, chosen by its ``kind``.
 Material: TypeAlias = Annotated[
-    Dielectric | Conductor | Mirror | Diffuse | Checker | Glossy, Field(discriminator="kind")
+    Dielectric | Conductor | Mirror | Diffuse | DiffuseTransmitter | Checker | Glossy,
+    Field(discriminator="kind"),
 ]

@@ -33,6 +33,25 @@ def normal_reflectance(n: ArrayLike, k: ArrayLike = 0.0) -> Array:
     return ((index - 1) ** 2 + extinction**2) / ((index + 1) ** 2 + extinction**2)
 
 
+def lacquered_reflectance(
+    coat: ArrayLike, n: ArrayLike, k: ArrayLike, optical_depth: ArrayLike, *, factor: float = 1.0
+) -> Array:
+    """Return the reflectance at normal incidence of a metal under a coat of index ``coat``, in air.
+
+    R = F + (1 − F)² R₁₂ τ² / (1 − F R₁₂ τ²), τ = exp(−a): every reflection between the coat's
+    surface F and the metal R₁₂ = ``factor`` times that of (n + i k)/``coat`` is counted, and
+    interference is not. ``optical_depth`` is a, of one passage.
+
+    >>> float(lacquered_reflectance(1.5, 0.0, 5.0, 0.0))
+    1.0
+    """
+    index = np.asarray(coat, dtype=np.float64)
+    surface = normal_reflectance(index)
+    metal = factor * normal_reflectance(np.asarray(n) / index, np.asarray(k) / index)
+    below = metal * np.exp(-2.0 * np.asarray(optical_depth, dtype=np.float64))
+    return surface + (1.0 - surface) ** 2 * below / (1.0 - surface * below)
+
+
 def fresnel_reflectances(n: ArrayLike, angle_deg: float) -> tuple[Array, Array]:
     """Return R_s and R_p of a clear medium of index ``n`` at ``angle_deg`` from the air side."""
     index = np.asarray(n, dtype=np.float64)

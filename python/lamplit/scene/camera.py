@@ -60,12 +60,38 @@ class OrthographicCamera(_Camera):
     height_mm: Length = Field(description="from the bottom to the top of the picture")
 
 
-Camera: TypeAlias = Annotated[PinholeCamera | OrthographicCamera, Field(discriminator="kind")]
+class ThinLensCamera(_Camera):
+    """A camera that sees in perspective through an ideal lens: what is not in focus is blurred."""
+
+    kind: Literal["thin-lens"]
+    field_of_view_deg: Annotated[Number, Field(gt=0.0, lt=180.0)] = Field(
+        default=30.0, description="from the bottom to the top of the picture"
+    )
+    aperture_mm: Length = Field(description="diameter of the lens's opening")
+    focus_mm: Length | None = Field(
+        default=None,
+        description="from the lens to the plane in focus; left out: through target_mm",
+    )
+
+    @property
+    def focus_distance_mm(self) -> float:
+        """The distance of the plane in focus, along the view."""
+        if self.focus_mm is not None:
+            return self.focus_mm
+        return float(np.linalg.norm(np.subtract(self.target_mm, self.position_mm)))
+
+
+Camera: TypeAlias = Annotated[
+    PinholeCamera | ThinLensCamera | OrthographicCamera, Field(discriminator="kind")
+]
 
 
 class ImageSettings(Table):
-    """Size, sampling, and the wavelengths that are followed."""
+    """Method, size, sampling, and the wavelengths that are followed."""
 
+    method: Literal["path", "hall"] = Field(
+        default="path", description="physical light transport, or the founding method"
+    )
     width: int = Field(default=640, ge=1, le=16384, description="pixels")
     height: int = Field(default=400, ge=1, le=16384, description="pixels")
     samples: int = Field(
@@ -74,9 +100,14 @@ class ImageSettings(Table):
         le=MOST_SAMPLES,
         description="rays from the camera per pixel; a grid needs a square number",
     )
+    error: Annotated[Positive, Field(le=1.0)] | None = Field(
+        default=None,
+        description="path: standard error of a pixel's luminance, as a share, to sample down to",
+    )
     sampling: Literal["grid", "sobol"] = Field(
         default="grid",
-        description="an even grid in each pixel, or scrambled Sobol points: no moiré",
+        description="hall: an even grid in each pixel, or scrambled Sobol points: no moiré; "
+        "path: always Sobol",
     )
     filter: Literal["box", "tent", "gaussian"] = Field(
         default="gaussian",
@@ -101,7 +132,8 @@ class ImageSettings(Table):
                 {"pixels": self.width * self.height, "most": MOST_PIXELS},
             )
         side = round(self.samples**0.5)
-        if self.sampling == "grid" and side * side != self.samples:
+        on_a_grid = self.method == "hall" and self.sampling == "grid"
+        if on_a_grid and side * side != self.samples:
             raise PydanticCustomError(
                 "not_square",
                 'samples: a grid needs a square number, such as {near}; or say sampling = "sobol"',

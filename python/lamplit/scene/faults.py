@@ -59,7 +59,8 @@ def written_keys(location: Sequence[str | int], written: object, *, missing: boo
         if isinstance(part, str) and part.startswith("<"):
             continue
         inside = _child(here, part)
-        if inside is not _ABSENT and _fits(inside, location[at + 1 :]):
+        rest = [key for key in location[at + 1 :] if not str(key).startswith("<")]
+        if inside is not _ABSENT and _fits(inside, rest):
             keys.append(part)
             here = inside
         elif at == len(location) - 1 and missing:

@@ -25,12 +25,38 @@ FileName: TypeAlias = Annotated[str, Field(min_length=1, max_length=1000)]
 Vector: TypeAlias = tuple[float, float, float]
 
 
+_NOT_IN_GROUPS = frozenset(".,:;=/\\*\"'[]{}")
+
+
+def is_group_name(name: str) -> bool:
+    """Return whether ``name`` can stand as a part of a layer's name and on a command line."""
+    return (
+        0 < len(name) <= 100
+        and name.isprintable()
+        and name == name.strip()
+        and not _NOT_IN_GROUPS & {*name}
+    )
+
+
+def _layer_name(name: str) -> str:
+    if not is_group_name(name):
+        raise PydanticCustomError(
+            "group_name",
+            "a light group's name has letters, digits, '-', '_' and blanks between them, "
+            "and {name} is given",
+            {"name": repr(name)[:60]},
+        )
+    return name
+
+
 def _has_length(vector: Vector) -> Vector:
     if max(abs(part) for part in vector) < 1e-12:
         raise PydanticCustomError("no_direction", "a direction needs a length other than zero")
     return vector
 
 
+#: The name of a light group: of layers in files, and of terms on the command line.
+GroupName: TypeAlias = Annotated[str, Field(min_length=1), AfterValidator(_layer_name)]
 #: A point in mm: three numbers in square brackets.
 Point: TypeAlias = Annotated[tuple[Coordinate, Coordinate, Coordinate], Field(strict=False)]
 #: A direction of any length but zero.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 OR MIT
-"""Lights, the ambient light and the background: all that shines, and how far rays follow it."""
+"""Lights, the ambient light and the background: all that shines besides the objects."""
 
 from __future__ import annotations
 
@@ -9,24 +9,20 @@ import numpy as np
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from lamplit.scene.fields import Direction, Length, Name, NotNegative, Point, Share, Table
+from lamplit.scene.fields import (
+    Direction,
+    FileName,
+    GroupName,
+    Length,
+    Name,
+    NotNegative,
+    Number,
+    Point,
+    Positive,
+    Share,
+    Table,
+)
 from lamplit.spectra_spec import NamedSource, SourceSpec
-
-
-class HallSettings(Table):
-    """How far the recursion of the founding method goes."""
-
-    max_depth: int = Field(default=12, ge=1, le=64, description="surfaces in one chain of rays")
-    contribution_limit: Share = Field(
-        default=3e-3, description="a ray that can add less than this share is not followed"
-    )
-    dispersion_groups: Literal[1, 2, 4, 8, 16] = Field(
-        default=1, description="directions that the lanes share at a dispersive refraction"
-    )
-    shadows: bool = Field(
-        default=True,
-        description="whether bodies take light from what lies behind them",
-    )
 
 
 class Radiator(Table):
@@ -84,6 +80,7 @@ class SoftBox(Radiator):
     edge_softness: Share = Field(
         default=0.0, description="0: a hard edge; 1: it falls off from the middle"
     )
+    group: GroupName = Field(default="background", description="light group")
 
     @model_validator(mode="after")
     def _faces_somewhere(self) -> SoftBox:
@@ -99,13 +96,53 @@ class SoftBox(Radiator):
         return self
 
 
-class ConstantBackground(Radiator):
+class Sun(Table):
+    """A round disc endlessly far away, of even luminance; it is added to what lies behind it."""
+
+    direction: Direction = Field(description="towards the sun")
+    angular_diameter_deg: Annotated[Number, Field(ge=0.01, le=90.0)] = Field(
+        default=0.533, description="across its disc, as seen from the scene"
+    )
+    source: SourceSpec = Field(description="the shape of the spectrum; its scale has no meaning")
+    illuminance_lx: NotNegative | None = Field(default=None, description="on a plane that faces it")
+    luminance_cd_m2: NotNegative | None = Field(default=None, description="of its disc")
+    group: GroupName = Field(default="background", description="light group")
+
+    @model_validator(mode="after")
+    def _has_one_strength(self) -> Sun:
+        if (self.illuminance_lx is None) == (self.luminance_cd_m2 is None):
+            raise PydanticCustomError(
+                "sun_strength", "a sun needs either illuminance_lx or luminance_cd_m2"
+            )
+        return self
+
+    @property
+    def angular_radius_rad(self) -> float:
+        """Half the angle across its disc."""
+        return float(np.radians(self.angular_diameter_deg / 2.0))
+
+    @property
+    def disc_luminance_cd_m2(self) -> float:
+        """Its luminance L = E / (π sin² of its radius), where its illuminance E was given."""
+        if self.luminance_cd_m2 is not None:
+            return self.luminance_cd_m2
+        return (self.illuminance_lx or 0.0) / (np.pi * float(np.sin(self.angular_radius_rad)) ** 2)
+
+
+class _Background(Table):
+    group: GroupName = Field(default="background", description="light group")
+    suns: Annotated[tuple[Sun, ...], Field(strict=False, max_length=16)] = Field(
+        default=(), description="discs endlessly far away, behind soft boxes"
+    )
+
+
+class ConstantBackground(Radiator, _Background):
     """The same light from every direction."""
 
     kind: Literal["constant"]
 
 
-class GradientBackground(Table):
+class GradientBackground(_Background):
     """Light that changes from the zenith (+y) to the nadir."""
 
     kind: Literal["gradient"]
@@ -113,7 +150,60 @@ class GradientBackground(Table):
     nadir: Radiator = Field(description="straight below")
 
 
-class StudioBackground(Table):
+class SkyBackground(_Background):
+    """A sky of ISO 15469 (CIE S 011) over even ground; its sun's disc is one of suns."""
+
+    kind: Literal["sky"]
+    model: Literal["cie-overcast", "cie-clear", "cie-general"] = Field(
+        description="Moon and Spencer's overcast sky, type 12, or any type of the standard"
+    )
+    type: Annotated[int, Field(ge=1, le=15)] | None = Field(
+        default=None, description="of cie-general: 1 steep overcast to 15 white-blue turbid"
+    )
+    source: SourceSpec = Field(description="the shape of the spectrum; its scale has no meaning")
+    zenith_luminance_cd_m2: NotNegative = Field(description="straight above")
+    sun_direction: Direction | None = Field(
+        default=None, description="towards the sun; not for cie-overcast"
+    )
+    ground: Radiator | None = Field(default=None, description="below the horizon; left out: black")
+
+    @model_validator(mode="after")
+    def _hangs_together(self) -> SkyBackground:
+        if (self.type is not None) != (self.model == "cie-general"):
+            raise PydanticCustomError(
+                "sky_type", 'type (1 to 15) belongs to model = "cie-general", which needs it'
+            )
+        if (self.sun_direction is not None) == (self.model == "cie-overcast"):
+            raise PydanticCustomError(
+                "sky_sun", "the overcast sky has no sun_direction, and all others need it"
+            )
+        if self.sun_direction is not None and self.sun_direction[1] < 0.0:
+            raise PydanticCustomError(
+                "sun_below", "sun_direction points below the horizon; its y must be 0 or more"
+            )
+        return self
+
+    @property
+    def general_type(self) -> int | None:
+        """The standard's type from 1 to 15; None for the traditional overcast sky."""
+        return 12 if self.model == "cie-clear" else self.type
+
+
+class ImageBackground(_Background):
+    """A picture all around; its spectra are derived from RGB, so its colours are a guess."""
+
+    kind: Literal["image"]
+    file: FileName = Field(
+        description="equirectangular Radiance (.hdr) or OpenEXR (.exr) picture, linear sRGB"
+    )
+    scale: Positive = Field(default=1.0, description="luminance in cd/m² of R = G = B = 1")
+    source: SourceSpec = Field(default=NamedSource("D65"), description="the spectrum of R = G = B")
+    rotate_deg: Number = Field(
+        default=0.0, description="about y, from +z to +x; at 0 its middle is seen along -z"
+    )
+
+
+class StudioBackground(_Background):
     """A constant or a gradient, and soft boxes before it."""
 
     kind: Literal["studio"]
@@ -140,16 +230,22 @@ class StudioBackground(Table):
     def base(self) -> ConstantBackground | GradientBackground:
         """What is seen where no soft box is."""
         if self.zenith is not None and self.nadir is not None:
-            return GradientBackground(kind="gradient", zenith=self.zenith, nadir=self.nadir)
+            return GradientBackground(
+                kind="gradient", zenith=self.zenith, nadir=self.nadir, group=self.group
+            )
         if self.source is not None and self.luminance_cd_m2 is not None:
             return ConstantBackground(
-                kind="constant", source=self.source, luminance_cd_m2=self.luminance_cd_m2
+                kind="constant",
+                source=self.source,
+                luminance_cd_m2=self.luminance_cd_m2,
+                group=self.group,
             )
         raise ValueError("this studio was made without its base")
 
 
 Background: TypeAlias = Annotated[
-    ConstantBackground | GradientBackground | StudioBackground, Field(discriminator="kind")
+    ConstantBackground | GradientBackground | StudioBackground | SkyBackground | ImageBackground,
+    Field(discriminator="kind"),
 ]
 
 #: A black background, for scenes that name none.

@@ -13,7 +13,9 @@ from pydantic import ValidationError
 
 from lamplit.errors import LamplitError, SceneError
 from lamplit.files import resolve_inside
+from lamplit.scene.emission import FileDistribution
 from lamplit.scene.faults import scene_fault
+from lamplit.scene.lighting import ImageBackground
 from lamplit.scene.models import Scene
 from lamplit.scene.objects import MeshObject
 from lamplit.scene.references import check_references
@@ -82,6 +84,12 @@ def _check_files(scene: Scene) -> None:
     for at, own in enumerate(scene.objects):
         if isinstance(own, MeshObject):
             resolve_inside(scene.root, own.file, where=f"objects[{at}].file")
+        spread = None if own.emission is None else own.emission.distribution
+        if isinstance(spread, FileDistribution):
+            where = f"objects[{at}].emission.distribution.file"
+            resolve_inside(scene.root, spread.file, where=where)
+    if isinstance(scene.background, ImageBackground):
+        resolve_inside(scene.root, scene.background.file, where="background.file")
     icc = getattr(scene.display.space, "icc", None)
     if icc is not None:
         resolve_inside(scene.root, icc, where="display.space.icc")

@@ -8,25 +8,37 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 
-from pydantic import Discriminator, Field, PrivateAttr, Tag
+from pydantic import Discriminator, Field, PrivateAttr, Tag, model_validator
 
-from lamplit.materials import HallTerms, Material
+from lamplit.materials import HallTerms, Material, Roughness, Texture
+from lamplit.materials.finish import check_texture
 from lamplit.scene.camera import Camera, DisplaySettings, ImageSettings
 from lamplit.scene.fields import Name, Table
-from lamplit.scene.lighting import BLACK, Ambient, Background, HallSettings, Light
+from lamplit.scene.lighting import BLACK, Ambient, Background, Light
+from lamplit.scene.methods import HallSettings, PathSettings
 from lamplit.scene.objects import Object
 from lamplit.spectra_spec import SourceSpec
 from lamplit.spectrum import SpectralDistribution
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from lamplit.scene.resolve import ResolvedObject
 
 
 class LibraryMaterial(Table):
-    """A material of the library, with shading terms of the scene's own if it likes."""
+    """A material of the library, with a finish and shading terms of the scene's own if it likes."""
 
     library: Name = Field(description="a name of the library; `lamplit materials` lists them")
+    roughness: Roughness | None = Field(default=None, description="instead of the library's")
+    texture: Texture | None = Field(default=None, description="which faces are rough")
     hall: HallTerms | None = Field(default=None, description="terms of the Hall method")
+
+    @model_validator(mode="after")
+    def _is_rough_where_textured(self) -> LibraryMaterial:
+        check_texture(self.texture, self.roughness)
+        return self
 
 
 def _material_form(value: object) -> str:
@@ -58,6 +70,9 @@ class Scene(Table):
     display: DisplaySettings = Field(
         default=DisplaySettings(), description="from tristimulus values to a picture"
     )
+    path_settings: PathSettings = Field(
+        default=PathSettings(), alias="path", description="how path transport spends its walks"
+    )
     hall: HallSettings = Field(default=HallSettings(), description="how far rays are followed")
     ambient: Ambient | None = Field(default=None, description="light from all around")
     background: Background = Field(default=BLACK, description="what rays meet that leave the scene")
@@ -87,7 +102,8 @@ class Scene(Table):
         # What was derived from the values was copied with them.
         stale = [
             "scene_hash",
-            *(["objects_as_read"] if {"objects", "materials"} & {*tables} else []),
+            *(["objects_as_read"] if {"objects", "materials", "sources"} & {*tables} else []),
+            *(["environment"] if "background" in tables else []),
         ]
         for name in stale:
             vars(copy).pop(name, None)
@@ -145,6 +161,17 @@ class Scene(Table):
         from lamplit.scene.resolve import resolve_objects
 
         return list(resolve_objects(self))
+
+    @cached_property
+    def environment(self) -> NDArray[np.float32] | None:
+        """Linear RGB (H, W, 3) of an ``image`` background, rows from the top; None for others.
+
+        Raises:
+            SceneError: The picture cannot be read, or a pixel of it is no radiance.
+        """
+        from lamplit.scene.shining import read_background_image
+
+        return read_background_image(self)
 
     @cached_property
     def objects_as_read(self) -> tuple[ResolvedObject, ...]:

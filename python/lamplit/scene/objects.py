@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
+from lamplit.scene.emission import Emission
 from lamplit.scene.fields import Direction, FileName, Length, Name, Number, Point, Positive, Table
 
 #: Millimetres in one unit of a mesh file.
@@ -63,6 +64,7 @@ class _Object(Table):
         default=0, ge=-1000, le=1000, description="where bodies share space, the higher one wins"
     )
     transform: Transform = Field(default=Transform(), description="moves it into the scene")
+    emission: Emission | None = Field(default=None, description="light from its surface")
 
 
 class Sphere(_Object):

@@ -40,6 +40,8 @@ def check_references(scene: Scene) -> None:
                 f"{nearest_name(own.library, library)}{_see('materials')}",
                 where=key_path(("materials", name, "library")),
             )
+        if isinstance(own, LibraryMaterial):
+            _check_finish(name, own)
     seen: dict[str, int] = {}
     known = library | set(scene.materials)
     for at, thing in enumerate(scene.objects):
@@ -65,6 +67,16 @@ def check_references(scene: Scene) -> None:
                 f"no source is called {name!r}{nearest_name(name, names)}{_see('sources')}",
                 where=key_path(keys),
             )
+
+
+def _check_finish(name: str, own: LibraryMaterial) -> None:
+    found = material(own.library)
+    if own.roughness is not None and "roughness" not in type(found).model_fields:
+        raise SceneError(
+            f"{own.library!r} is {found.kind}, and has no roughness; "
+            "dielectric, conductor, mirror and glossy have one",
+            where=key_path(("materials", name, "roughness")),
+        )
 
 
 def _see(noun: str) -> str:
@@ -112,4 +124,6 @@ def resolve_material(scene: Scene, name: str) -> Material:
     if not isinstance(own, LibraryMaterial):
         return own
     found = material(own.library)
-    return found if own.hall is None else found.model_copy(update={"hall": own.hall})
+    given = {key: getattr(own, key) for key in ("hall", "roughness", "texture")}
+    changed = {key: value for key, value in given.items() if value is not None}
+    return found.model_copy(update=changed) if changed else found

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from lamplit.errors import GeometryError, LamplitError, SceneError
 from lamplit.files import resolve_inside
 from lamplit.materials import Material
+from lamplit.scene.emission import ResolvedEmission
+from lamplit.scene.emitters import resolve_emission
 from lamplit.scene.meshes import Mesh, load_mesh
 from lamplit.scene.models import Scene
 from lamplit.scene.objects import UNITS_MM, MeshObject, Object
@@ -23,7 +25,7 @@ class ResolvedObject:
 
     ``shape`` holds the equation's numbers in mm; ``mesh`` is there for ``kind`` "mesh" alone;
     ``transform`` (4, 4) takes column vectors of both to the scene. ``notices`` say what was put
-    right in the mesh.
+    right in the mesh. ``emission`` is there for what shines.
     """
 
     name: str
@@ -35,6 +37,7 @@ class ResolvedObject:
     shape: Object
     mesh: Mesh | None
     notices: tuple[str, ...]
+    emission: ResolvedEmission | None
 
     @property
     def transparent(self) -> bool:
@@ -47,7 +50,8 @@ def read_objects(scene: Scene) -> tuple[ResolvedObject, ...]:
 
     Raises:
         GeometryError: A mesh cannot be read.
-        SceneError: A file is missing or outside the scene's folder, or a name is unknown.
+        SceneError: A file is missing, outside the scene's folder, or not what it is to be; or a
+            name is unknown.
     """
     meshes: dict[tuple[object, ...], Mesh] = {}
     resolved: list[ResolvedObject] = []
@@ -67,6 +71,7 @@ def read_objects(scene: Scene) -> tuple[ResolvedObject, ...]:
                 shape,
                 mesh,
                 () if mesh is None else mesh.notices,
+                resolve_emission(scene, shape, at),
             )
         )
     return tuple(resolved)
@@ -123,10 +128,15 @@ def _open_mesh(name: str, mesh: Mesh) -> str:
 
 def resolve_objects(scene: Scene) -> tuple[ResolvedObject, ...]:
     """See `Scene.resolved_objects`."""
+    from lamplit.scene.shining import light_faults
     from lamplit.scene.spectra import spectral_faults
     from lamplit.scene.view import view_fault
 
-    faults: list[LamplitError] = [*spectral_faults(scene), *solid_faults(scene)]
+    faults: list[LamplitError] = [
+        *spectral_faults(scene),
+        *solid_faults(scene),
+        *light_faults(scene),
+    ]
     if not faults and (fault := view_fault(scene)) is not None:
         faults.append(fault)
     if faults:

@@ -7,12 +7,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
+from lamplit.errors import SceneError
 from lamplit.scene.contact import Contact, find_contacts
 from lamplit.scene.faults import key_path
 from lamplit.scene.memory import MemoryEstimate, memory_estimate
 from lamplit.scene.models import Scene
 from lamplit.scene.references import values_of
 from lamplit.scene.resolve import ResolvedObject, solid_faults
+from lamplit.scene.shining import light_faults, path_notices
 from lamplit.scene.solids import Body, bodies
 from lamplit.scene.spectra import spectral_faults
 from lamplit.scene.view import view_fault
@@ -56,16 +58,28 @@ def check_scene(scene: Scene) -> Report:
         *_contacts(everything),
         *_unused(scene),
     ]
+    if not any(finding.subject == "background.file" for finding in found):
+        found += _path_findings(scene)
     order = ("error", "warning", "notice")
     found.sort(key=lambda finding: order.index(finding.level))
     return Report(tuple(found), memory_estimate(scene))
 
 
 def _errors(scene: Scene) -> Iterator[Finding]:
-    faults = [*spectral_faults(scene), *solid_faults(scene)]
+    faults = [*spectral_faults(scene), *solid_faults(scene), *light_faults(scene)]
     if (unseen := view_fault(scene)) is not None:
         faults.append(unseen)
     for fault in faults:
+        yield Finding("error", fault.where or scene.name, fault.message)
+
+
+def _path_findings(scene: Scene) -> Iterator[Finding]:
+    if scene.image.method != "path":
+        return
+    try:
+        for notice in path_notices(scene):
+            yield Finding("notice", "image.method", notice)
+    except SceneError as fault:
         yield Finding("error", fault.where or scene.name, fault.message)
 
 

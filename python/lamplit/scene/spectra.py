@@ -20,8 +20,9 @@ _Spectrum = Callable[[NDArray[np.float64]], object]
 #: What materials, and their Hall terms, answer for wavelengths.
 _ANSWERS = (
     *("index", "extinction", "absorption_per_mm"),
-    *("reflectance_at", "reflectance_a_at", "reflectance_b_at"),
+    *("reflectance_at", "transmittance_at", "reflectance_a_at", "reflectance_b_at"),
 )
+_PARTS = {"scattering": ("per_mm",), "lacquer": ("index", "optical_depth")}
 _TERMS = ("specular_reflectance", "specular_transmittance", "ambient_reflectance")
 
 
@@ -58,6 +59,10 @@ def _answers(material: Material) -> Iterator[_Spectrum]:
     for name in _ANSWERS:
         if answer := getattr(material, name, None):
             yield answer
+    for part, names in _PARTS.items():
+        for name in names:
+            if (holder := getattr(material, part, None)) is not None:
+                yield getattr(holder, name)
     for name in _TERMS:
         if term := getattr(material.hall, name, None):
             yield term.distribution()

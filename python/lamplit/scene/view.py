@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lamplit.errors import LamplitError, SceneError
-from lamplit.scene.camera import PinholeCamera
+from lamplit.scene.camera import OrthographicCamera, ThinLensCamera
 from lamplit.scene.models import Scene
 from lamplit.scene.solids import Body, bodies
 
@@ -32,7 +32,7 @@ def view_fault(scene: Scene) -> LamplitError | None:
             )
     if any(_may_be_seen(scene, body) for body in everything):
         return None
-    key = "field_of_view_deg" if isinstance(camera, PinholeCamera) else "height_mm"
+    key = "height_mm" if isinstance(camera, OrthographicCamera) else "field_of_view_deg"
     return SceneError(
         f"the camera sees none of the scene's objects: check position_mm, target_mm and {key}",
         file=scene.path,
@@ -60,11 +60,15 @@ def _may_be_seen(scene: Scene, body: Body) -> bool:
     low, high = body.bounds
     corners = np.array([[(low, high)[i >> k & 1][k] for k in range(3)] for i in range(8)]) - eye
     x, y, z = corners @ right, corners @ up, corners @ forward
-    if isinstance(camera, PinholeCamera):
-        height = np.tan(np.radians(camera.field_of_view_deg) / 2.0) * z
-    else:
+    if isinstance(camera, OrthographicCamera):
         height = np.full(8, camera.height_mm / 2.0)
+    else:
+        height = np.tan(np.radians(camera.field_of_view_deg) / 2.0) * z
     width = height * aspect
+    if isinstance(camera, ThinLensCamera):
+        # A ray from the lens's rim r is r·|1 − z/f| beside the pinhole's: at most r·(1 + z/f).
+        spread = camera.aperture_mm / 2.0 * (1.0 + z / camera.focus_distance_mm)
+        height, width = height + spread, width + spread
     beyond = (x > width, x < -width, y > height, y < -height, z <= 0.0)
     return not any(bool(side.all()) for side in beyond)
 
@@ -73,7 +77,7 @@ def _plane_may_be_seen(scene: Scene, point: Array, normal: Array) -> bool:
     camera, image = scene.camera, scene.image
     right, up, forward = camera_axes(scene)
     height = float(np.dot(np.subtract(camera.position_mm, point), normal))
-    if not isinstance(camera, PinholeCamera):
+    if isinstance(camera, OrthographicCamera):
         return float(np.dot(forward, normal)) * height < 0.0 or height == 0.0
     half = np.tan(np.radians(camera.field_of_view_deg) / 2.0)
     ways = [
@@ -81,4 +85,12 @@ def _plane_may_be_seen(scene: Scene, point: Array, normal: Array) -> bool:
         for i in (-1, 1)
         for j in (-1, 1)
     ]
+    if isinstance(camera, ThinLensCamera):
+        # Lens and plane may cross; else a ray through the rim is that much steeper.
+        radius, focus = camera.aperture_mm / 2.0, camera.focus_distance_mm
+        across = np.hypot(float(np.dot(right, normal)), float(np.dot(up, normal)))
+        if radius * across >= abs(height):
+            return True
+        steeper = -np.sign(height) * normal * radius * across / focus
+        ways = [way + steeper for way in ways]
     return any(float(np.dot(way, normal)) * height < 0.0 for way in ways)
