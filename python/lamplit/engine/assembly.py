@@ -4,24 +4,15 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lamplit import _core
 from lamplit.engine.carrier import Array, Carrier
+from lamplit.engine.lighting import core_background, core_emission, radiance
 from lamplit.errors import SceneError
 from lamplit.materials.models import Dielectric, HallTerms, Material
 from lamplit.materials.optics import LINE_D_NM
 from lamplit.scene import ResolvedObject, Scene
-from lamplit.scene.lighting import (
-    ConstantBackground,
-    DirectionalLight,
-    GradientBackground,
-    PointLight,
-    Radiator,
-    SoftBox,
-    SphereLight,
-    StudioBackground,
-)
+from lamplit.scene.lighting import DirectionalLight, PointLight, SphereLight
 from lamplit.scene.objects import (
     Box,
     Cone,
@@ -33,6 +24,7 @@ from lamplit.scene.objects import (
     Sphere,
     Tetrahedron,
 )
+from lamplit.scene.shining import light_groups
 from lamplit.spectra_spec import FractionSpec
 
 
@@ -51,6 +43,7 @@ class _Assembly:
         self._carrier = carrier
         self._builder = _core.SceneBuilder(carrier.count)
         self._materials: dict[str, int] = {}
+        self._groups = light_groups(scene)
 
     def build(self) -> _core.Scene:
         try:
@@ -58,8 +51,9 @@ class _Assembly:
                 self._add_object(thing)
             self._set_camera()
             self._add_lights()
-            self._set_background()
-            return self._builder.build(self._carrier.colour_matching(), ["background"])
+            surround = core_background(self._scene, self._carrier, self._groups)
+            self._builder.set_background(surround)
+            return self._builder.build(self._carrier.colour_matching(), self._groups)
         except SceneError as fault:
             if fault.file is None:
                 raise SceneError(fault.message, file=self._scene.path, where=fault.where) from fault
@@ -73,17 +67,31 @@ class _Assembly:
         owner = (thing.name, self._materials[thing.material_name], thing.priority)
         if thing.mesh is None:
             kind, numbers = thing.shape.kind, _defining_numbers(thing.shape)
-            self._builder.add_primitive(owner, kind, numbers, thing.transform.tolist())
+            body = self._builder.add_primitive(owner, kind, numbers, thing.transform.tolist())
+            self._shine(body, thing)
             return
         mesh, matrix = thing.mesh, thing.transform
         vertices = mesh.vertices_mm @ matrix[:3, :3].T + matrix[:3, 3]
         normals = None
         if mesh.normals is not None:
             normals = np.ascontiguousarray(mesh.normals @ np.linalg.inv(matrix[:3, :3]))
-        self._builder.add_mesh(owner, np.ascontiguousarray(vertices), mesh.triangles, normals)
+        corners = np.ascontiguousarray(vertices)
+        body = self._builder.add_mesh(owner, corners, mesh.triangles, normals)
+        self._shine(body, thing)
+
+    def _shine(self, body: int, thing: ResolvedObject) -> None:
+        if thing.emission is not None:
+            emission = core_emission(thing.emission, self._carrier, where=f"{thing.name}.emission")
+            self._builder.add_emission(body, emission, self._groups.index(thing.emission.group))
 
     def _add_material(self, material: Material) -> int:
-        return self._builder.add_material(self._matter(material), self._hall(material))
+        matter, hall = self._matter(material), self._hall(material)
+        if material.kind in ("diffuse", "checker", "diffuse-transmitter"):
+            return self._builder.add_material(matter, hall)
+        texture = material.texture
+        patch = texture and (texture.facing, float(np.cos(np.radians(texture.within_deg))))
+        roughness = material.roughness
+        return self._builder.add_material(matter, hall, roughness=roughness, texture=patch)
 
     def _matter(self, material: Material) -> _core.Matter:
         carrier, matter = self._carrier, _core.Matter
@@ -91,14 +99,31 @@ class _Assembly:
             case "dielectric":
                 absorption = carrier.absorption_per_mm(material.absorption_per_mm)
                 index = carrier.index(material.index)
-                return matter.dielectric(index, _index_d(material), absorption)
+                turbid = material.scattering
+                return matter.dielectric(
+                    index,
+                    _index_d(material),
+                    absorption,
+                    scattering_per_mm=turbid and carrier.reflectance(turbid.per_mm),
+                    anisotropy=turbid.anisotropy if turbid else 0.0,
+                )
             case "conductor":
                 n, k = carrier.metal(material.index), carrier.metal(material.extinction)
-                return matter.conductor(n, k, material.factor)
+                coat = material.lacquer
+                lacquer = coat and (
+                    carrier.index(coat.index),
+                    carrier.reflectance(coat.optical_depth),
+                )
+                return matter.conductor(n, k, material.factor, lacquer=lacquer)
             case "mirror":
                 return matter.mirror(carrier.reflectance(material.reflectance_at))
             case "diffuse":
                 return matter.diffuse(carrier.reflectance(material.reflectance_at))
+            case "diffuse-transmitter":
+                reflectance = carrier.reflectance(material.reflectance_at)
+                return matter.transmitter(
+                    reflectance, carrier.reflectance(material.transmittance_at)
+                )
             case "checker":
                 first = carrier.reflectance(material.reflectance_a_at)
                 second = carrier.reflectance(material.reflectance_b_at)
@@ -123,21 +148,22 @@ class _Assembly:
     def _fraction(self, spec: FractionSpec | None) -> Array | None:
         return None if spec is None else self._carrier.reflectance(spec.distribution())
 
-    def _radiance(self, radiator: Radiator, where: str) -> Array:
-        spectrum = self._scene.resolve_source(radiator.source)
-        return self._carrier.light(spectrum, radiator.luminance_cd_m2, where=f"{where}.source")
-
     def _set_camera(self) -> None:
         camera = self._scene.camera
         view = (camera.position_mm, camera.target_mm, camera.up)
-        if camera.kind == "pinhole":
-            self._builder.set_camera(*view, field_of_view_deg=camera.field_of_view_deg)
-        else:
-            self._builder.set_camera(*view, height_mm=camera.height_mm)
+        match camera.kind:
+            case "pinhole":
+                self._builder.set_camera(*view, field_of_view_deg=camera.field_of_view_deg)
+            case "thin-lens":
+                lens = (camera.aperture_mm, camera.focus_distance_mm)
+                angle = camera.field_of_view_deg
+                self._builder.set_camera(*view, field_of_view_deg=angle, lens_mm=lens)
+            case "orthographic":
+                self._builder.set_camera(*view, height_mm=camera.height_mm)
 
     def _add_lights(self) -> None:
         for at, light in enumerate(self._scene.lights):
-            strength = self._radiance(light, f"lights[{at}]")
+            strength = radiance(self._scene, self._carrier, light, f"lights[{at}]")
             match light:
                 case PointLight():
                     self._builder.add_point_light(strength, light.position_mm)
@@ -146,29 +172,8 @@ class _Assembly:
                 case SphereLight():
                     self._builder.add_sphere_light(strength, light.centre_mm, light.radius_mm)
         if self._scene.ambient is not None:
-            self._builder.set_ambient(self._radiance(self._scene.ambient, "ambient"))
-
-    def _set_background(self) -> None:
-        background = self._scene.background
-        base = background.base if isinstance(background, StudioBackground) else background
-        surround = self._surround(base)
-        if isinstance(background, StudioBackground):
-            for at, soft_box in enumerate(background.soft_boxes):
-                radiance = self._radiance(soft_box, f"background.soft_boxes[{at}]")
-                half_width, half_height = _half_axes(soft_box)
-                surround.add_soft_box(
-                    radiance, soft_box.centre_mm, half_width, half_height, soft_box.edge_softness, 0
-                )
-        self._builder.set_background(surround)
-
-    def _surround(self, base: ConstantBackground | GradientBackground) -> _core.Background:
-        match base:
-            case ConstantBackground():
-                return _core.Background.constant(self._radiance(base, "background"), 0)
-            case GradientBackground():
-                zenith = self._radiance(base.zenith, "background.zenith")
-                nadir = self._radiance(base.nadir, "background.nadir")
-                return _core.Background.gradient(zenith, nadir, 0)
+            ambient = radiance(self._scene, self._carrier, self._scene.ambient, "ambient")
+            self._builder.set_ambient(ambient)
 
 
 def _index_d(material: Dielectric) -> float:
@@ -176,18 +181,6 @@ def _index_d(material: Dielectric) -> float:
     spectrum = material.refractive_index.index()
     low, high = spectrum.domain_nm
     return float(spectrum(np.array([np.clip(LINE_D_NM, low, high)]))[0])
-
-
-def _half_axes(soft_box: SoftBox) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Return half the width and half the height as vectors whose product points to the front."""
-    normal = np.subtract(soft_box.facing_mm, soft_box.centre_mm)
-    right = np.cross(soft_box.up, normal)
-    right /= np.linalg.norm(right)
-    upright = np.cross(normal, right)
-    upright /= np.linalg.norm(upright)
-    half_width: NDArray[np.float64] = right * (soft_box.width_mm / 2.0)
-    half_height: NDArray[np.float64] = upright * (soft_box.height_mm / 2.0)
-    return tuple(half_width.tolist()), tuple(half_height.tolist())
 
 
 def _defining_numbers(shape: Object) -> list[float]:

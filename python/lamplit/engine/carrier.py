@@ -37,6 +37,18 @@ class Carrier(Protocol):
         """Return a radiance of this spectrum and luminance."""
         ...
 
+    def radiant(self, spectrum: Spectrum, watts: float, *, where: str) -> Array:
+        """Return a quantity of this spectrum whose sum over the wavelengths is ``watts``."""
+        ...
+
+    def absolute(self, spectrum: Spectrum) -> Array:
+        """Return a radiance that the spectrum gives in its own unit, per nm."""
+        ...
+
+    def environment(self, white: Spectrum, luminance_cd_m2: float) -> tuple[Array, Array, Array]:
+        """Return the radiances of R, G and B = 1 of a picture whose white has this luminance."""
+        ...
+
     def reflectance(self, spectrum: Spectrum) -> Array:
         """Return a reflectance or a transmittance."""
         ...
@@ -88,10 +100,7 @@ class SpectralCarrier:
         Raises:
             SceneError: The spectrum gives no light that the eye sees, or is negative somewhere.
         """
-        shape = spectrum(self.wavelengths_nm)
-        if (shape < 0).any():
-            at = self.wavelengths_nm[np.argmax(shape < 0)]
-            raise SceneError(f"the source is negative at {at:g} nm; no light is", where=where)
+        shape = self._not_negative(spectrum, where)
         if luminance_cd_m2 == 0.0:
             return np.zeros(self.count)
         luminance = float(self.tristimulus(shape)[1])
@@ -102,6 +111,39 @@ class SpectralCarrier:
                 where=where,
             )
         return shape * (luminance_cd_m2 / luminance)
+
+    def radiant(self, spectrum: Spectrum, watts: float, *, where: str) -> Array:
+        """Return the spectrum scaled so that its sum over the picture's wavelengths is ``watts``.
+
+        Raises:
+            SceneError: The spectrum has no power there, or is negative somewhere.
+        """
+        shape = self._not_negative(spectrum, where)
+        power = float(shape.sum()) * self.step_nm
+        if power <= 0.0:
+            raise SceneError(
+                "the source has no power within image.wavelength_range_nm", where=where
+            )
+        return shape * (watts / power)
+
+    def absolute(self, spectrum: Spectrum) -> Array:
+        """Return the values on the wavelengths."""
+        return spectrum(self.wavelengths_nm)
+
+    def environment(self, white: Spectrum, luminance_cd_m2: float) -> tuple[Array, Array, Array]:
+        """Return smooth spectra for R, G and B that add up to the white: a guess."""
+        from lamplit.colour.uplift import basis
+
+        radiance = self.light(white, luminance_cd_m2, where="background.source")
+        r, g, b = (np.ascontiguousarray(column) for column in basis(self.wavelengths_nm).T)
+        return r * radiance, g * radiance, b * radiance
+
+    def _not_negative(self, spectrum: Spectrum, where: str) -> Array:
+        shape = spectrum(self.wavelengths_nm)
+        if (shape < 0).any():
+            at = self.wavelengths_nm[np.argmax(shape < 0)]
+            raise SceneError(f"the source is negative at {at:g} nm; no light is", where=where)
+        return shape
 
     def reflectance(self, spectrum: Spectrum) -> Array:
         """Return the values on the wavelengths."""
@@ -150,6 +192,24 @@ class RgbCarrier:
         """Return linear RGB in cd/m², of this luminance where no number had to be cut."""
         radiance = self._spectral.light(spectrum, luminance_cd_m2, where=where)
         return self._lanes(np.maximum(self._rgb(radiance), 0.0))
+
+    def radiant(self, spectrum: Spectrum, watts: float, *, where: str) -> Array:
+        """Return the linear RGB of that power."""
+        power = self._spectral.radiant(spectrum, watts, where=where)
+        return self._lanes(np.maximum(self._rgb(power), 0.0))
+
+    def absolute(self, spectrum: Spectrum) -> Array:
+        """Return the linear RGB of that radiance."""
+        radiance = self._spectral.absolute(spectrum)
+        return self._lanes(np.maximum(self._rgb(radiance), 0.0))
+
+    def environment(self, white: Spectrum, luminance_cd_m2: float) -> tuple[Array, Array, Array]:
+        """Return linear RGB of the picture's R, G and B."""
+        r, g, b = (
+            self._lanes(np.maximum(self._rgb(radiance), 0.0))
+            for radiance in self._spectral.environment(white, luminance_cd_m2)
+        )
+        return r, g, b
 
     def metal(self, spectrum: Spectrum) -> Array:
         """Return the numbers under the scene's white, at least 1e-3."""

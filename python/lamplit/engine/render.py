@@ -128,7 +128,11 @@ def _trace(
 
 def _method(scene: Scene, method: str) -> _core.HallMethod | _core.PathMethod:
     if method == "path":
-        return _core.PathMethod(max_depth=64, split_depth=int(os.environ.get("SPLIT","4")), roulette_below=float(os.environ.get("ROUL","0.05")))
+        return _core.PathMethod(
+            max_depth=64,
+            split_depth=int(os.environ.get("SPLIT", "4")),
+            roulette_below=float(os.environ.get("ROUL", "0.05")),
+        )
     hall = scene.hall
     return _core.HallMethod(
         max_depth=hall.max_depth,
