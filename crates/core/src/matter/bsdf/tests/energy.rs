@@ -115,3 +115,25 @@ fn a_rough_metals_albedo_is_near_the_integral_of_its_answer_and_below_one() {
         }
     }
 }
+
+#[test]
+fn a_grey_rough_mirror_loses_its_share_at_every_facet() {
+    // One facet gives back F·(1 − ℓ). What is lost then meets facets of the mean loss.
+    let (f, table) = (0.5, AlbedoTable::new(1.0).unwrap());
+    let mirror = Reflector::new(Facet::Measured(SampledSpectrum::splat(f)), Some(&table));
+    let mean = table.mean_reflector_loss();
+    assert!(mean > 0.1);
+    for cos in [0.9, 0.4] {
+        let loss = table.reflector_loss(table.between_cosines(cos));
+        let mut expected = f * (1.0 - loss);
+        let mut carried = f * loss;
+        for _ in 0..60 {
+            carried *= f;
+            expected += carried * (1.0 - mean);
+            carried *= mean;
+        }
+        let wi = direction(cos, 0.0);
+        let found = albedo_of(&Bsdf::Reflector(mirror), wi, &even_lanes(), 0..60_000).0[0];
+        assert!((found - expected).abs() < 1e-3, "{cos}: {found} {expected}");
+    }
+}
