@@ -34,6 +34,11 @@ pub fn polarised_dielectric_reflectances(cos_i: f64, eta: f64) -> [f64; 2] {
     let Some(cos_t) = refracted_cosine(cos_i, eta) else {
         return [1.0, 1.0];
     };
+    polarised_reflectances_between(cos_i, cos_t, eta)
+}
+
+/// The reflectances for s- and p-polarised light by the cosines on both sides.
+pub fn polarised_reflectances_between(cos_i: f64, cos_t: f64, eta: f64) -> [f64; 2] {
     let r_s = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
     let r_p = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
     [r_s * r_s, r_p * r_p]

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 OR MIT
 //! [`Lacquer`]: a clear or dyed coat that follows a metal's surface.
 
-use super::fresnel::{polarised_conductor_reflectances, polarised_dielectric_reflectances};
+use super::fresnel::{polarised_conductor_reflectances, polarised_reflectances_between};
 use crate::spectrum::{SampledSpectrum, SampledWavelengths, SpectralTable};
 
 /// A coat of even thickness, too thick to show interference, on a metal.
@@ -45,21 +45,24 @@ impl SampledLacquer {
     ) -> SampledSpectrum {
         let sin2_i = (1.0 - cos_i) * (1.0 + cos_i);
         let eta = self.index / medium_index;
+        // Beyond the critical angle the lanes run along with any cosine, and end at 1.
         let cos2_c = eta.map(|eta| 1.0 - sin2_i / (eta * eta));
-        let slant = cos2_c.map(|cos2| if cos2 > 0.0 { 2.0 / cos2.sqrt() } else { 0.0 });
-        let there_and_back = (self.optical_depth * slant).transmittance(1.0);
+        let cos_c = cos2_c.map(|cos2| cos2.max(1e-12).sqrt());
+        let there_and_back = (self.optical_depth * 2.0 / cos_c).transmittance(1.0);
         SampledSpectrum::from_fn(|j| {
-            if cos2_c.0[j] <= 0.0 {
-                return 1.0;
-            }
-            let coat = polarised_dielectric_reflectances(cos_i, eta.0[j]);
+            let coat = polarised_reflectances_between(cos_i, cos_c.0[j], eta.0[j]);
             let (n, k) = (n.0[j] / self.index.0[j], k.0[j] / self.index.0[j]);
-            let metal = polarised_conductor_reflectances(cos2_c.0[j].sqrt(), n, k);
+            let metal = polarised_conductor_reflectances(cos_c.0[j], n, k);
             let total = |f: f64, metal: f64| {
                 let below = factor * metal * there_and_back.0[j];
                 f + (1.0 - f) * (1.0 - f) * below / (1.0 - f * below)
             };
-            0.5 * (total(coat[0], metal[0]) + total(coat[1], metal[1]))
+            let both = 0.5 * (total(coat[0], metal[0]) + total(coat[1], metal[1]));
+            if cos2_c.0[j] > 0.0 {
+                both
+            } else {
+                1.0
+            }
         })
     }
 }

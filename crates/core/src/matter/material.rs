@@ -254,6 +254,8 @@ fn metal_facet(
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
 
     fn table(value: f64) -> SpectralTable {
@@ -269,5 +271,74 @@ mod tests {
         assert_eq!(value(15.0, 0.0, 5.0), 0.9);
         assert_eq!(value(15.0, 0.0, -5.0), 0.1);
         assert_eq!(value(5.0, -1e-12, 5.0), 0.1);
+    }
+
+    const AIR: SampledSpectrum = SampledSpectrum::ONE;
+    const FIRST: SampledWavelengths = SampledWavelengths { phase: 0 };
+
+    fn material(optics: Optics, finish: Finish) -> Material {
+        let hall = HallTerms {
+            reflection_weight: 1.0,
+            transmission_weight: 1.0,
+            ambient_weight: 0.0,
+            highlight_exponent: 1.0,
+            specular_reflectance: None,
+            specular_transmittance: None,
+            ambient_reflectance: None,
+        };
+        Material { optics, finish, hall }
+    }
+
+    #[test]
+    fn a_mirror_reflects_the_same_by_both_methods_and_dimmer_under_dyed_lacquer() {
+        let metal = |lacquer| {
+            let (n, k) = (table(1.015), table(6.627));
+            material(Optics::Conductor { n, k, factor: 0.9, lacquer }, Finish::SMOOTH)
+        };
+        let lacquer = Lacquer { index: table(1.5), optical_depth: table(0.5) };
+        let seen = [metal(None), metal(Some(lacquer))].map(|metal| {
+            let by_hall = metal.opaque_specular_reflectance(0.7, AIR, FIRST);
+            let bsdf = metal.bsdf(DVec3::ZERO, DVec3::Z, AIR, FIRST);
+            assert!(!bsdf.scatters());
+            assert_eq!(bsdf.mirror(0.7), by_hall);
+            by_hall.unwrap().0[0]
+        });
+        assert!((seen[0] - 0.9 * 0.9153).abs() < 0.01, "{seen:?}");
+        assert!(seen[1] < 0.5 * seen[0], "{seen:?}");
+    }
+
+    #[test]
+    fn a_textured_body_is_rough_in_front_and_smooth_behind() {
+        let roughness = Arc::new(AlbedoTable::new(0.2).unwrap());
+        let finish = Finish::rough(roughness).facing(DVec3::Z, 0.2);
+        let (index, base) = (table(1.49), table(0.3));
+        let body = material(Optics::Glossy { index, base }, finish);
+        let mirror = |normal| body.bsdf(DVec3::ZERO, normal, AIR, FIRST).mirror(0.5);
+        assert_eq!(body.alpha_at(DVec3::Z), 0.2);
+        assert_eq!(body.alpha_at(-DVec3::Z), 0.0);
+        assert_eq!(mirror(DVec3::Z), None);
+        assert_eq!(mirror(-DVec3::Z).unwrap().0[0], dielectric_reflectance(0.5, 1.49));
+    }
+
+    #[test]
+    fn hall_sees_a_sheet_that_lets_light_through_as_matt() {
+        let (reflectance, transmittance) = (table(0.4), table(0.5));
+        let sheet = material(Optics::Transmitter { reflectance, transmittance }, Finish::SMOOTH);
+        let seen = sheet.diffuse_reflectance(DVec3::ZERO, FIRST).unwrap();
+        assert_eq!(seen.0[0], 0.4);
+        assert_eq!(sheet.opaque_specular_reflectance(0.5, AIR, FIRST), None);
+        let bsdf = sheet.bsdf(DVec3::ZERO, DVec3::Z, AIR, FIRST);
+        assert!((bsdf.eval(DVec3::Z, -DVec3::Z).0[0] - 0.5 / std::f64::consts::PI).abs() < 1e-15);
+        assert_eq!(bsdf.albedo(DVec3::Z).0[0], 0.9);
+    }
+
+    #[test]
+    fn glass_met_from_water_has_the_ratio_of_both_indices() {
+        let (index, absorption) = (table(1.5), table(0.0));
+        let glass = Dielectric { index, index_d: 1.5, absorption, scattering: None };
+        let glass = material(Optics::Dielectric(glass), Finish::SMOOTH);
+        let bsdf = glass.bsdf(DVec3::ZERO, DVec3::Z, SampledSpectrum::splat(1.333), FIRST);
+        let expected = dielectric_reflectance(0.6, 1.5 / 1.333);
+        assert_eq!(bsdf.mirror(0.6).unwrap().0[0], expected);
     }
 }

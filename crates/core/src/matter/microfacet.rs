@@ -111,6 +111,22 @@ mod tests {
         }
     }
 
+    #[test]
+    fn masking_is_the_mean_over_the_heights_of_the_facets() {
+        // A facet at the height share c is open upwards with c^Λ and downwards with (1 − c)^Λ.
+        let steps = 200_000;
+        for (i, o) in [(0.3, 0.8), (2.0, 0.1), (1.0, 4.0)] {
+            let (mut up, mut down) = (0.0, 0.0);
+            for step in 0..steps {
+                let c = (f64::from(step) + 0.5) / f64::from(steps);
+                up += c.powf(i) * c.powf(o) / f64::from(steps);
+                down += c.powf(i) * (1.0 - c).powf(o) / f64::from(steps);
+            }
+            assert!((masking_of_reflection(i, o) - up).abs() < 1e-6);
+            assert!((masking_of_transmission(i, o) - down).abs() < 1e-4, "{i} {o} {down}");
+        }
+    }
+
     proptest! {
         #[test]
         fn a_surface_that_one_side_sees_whole_is_masked_alike_both_ways(lambda in 0.0..100.0f64) {

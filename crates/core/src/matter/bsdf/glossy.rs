@@ -6,7 +6,7 @@ use std::f64::consts::FRAC_1_PI;
 use super::lambert::above;
 use super::{happens, Ratios, Rough};
 use crate::math::{DVec2, DVec3};
-use crate::matter::albedo::{AlbedoTable, Between, Sides};
+use crate::matter::albedo::{AlbedoTable, Shares, Sides};
 use crate::matter::fresnel::{dielectric_reflectance, diffuse_dielectric_reflectance, reflect};
 use crate::matter::microfacet::masking_of_reflection;
 use crate::sampling::cosine_hemisphere;
@@ -80,11 +80,11 @@ impl<'a> Glossy<'a> {
         let mut lane = 0;
         let coat = self.ratios.map(|eta| {
             let sides = rough.sides(eta);
-            let [i, o] = cosines.map(|mu| 1.0 - coat_albedo(&sides, mu));
-            entered.0[lane] = i * o;
+            let [i, o] = cosines.map(|mu| sides.here.shares(mu));
+            entered.0[lane] = (1.0 - coat_albedo(&sides, i)) * (1.0 - coat_albedo(&sides, o));
             lane += 1;
             let f = dielectric_reflectance(wi.dot(h), eta);
-            f * single + returned(&sides, cosines) * wo.z
+            f * single + returned(&sides, [i.loss, o.loss]) * wo.z
         });
         if lane == 1 {
             entered = SampledSpectrum::splat(entered.0[0]);
@@ -104,8 +104,7 @@ impl<'a> Glossy<'a> {
         let facet = ggx.visible_density(wi, h, ggx.lambda(wi)) / (4.0 * wi.dot(h));
         let [facet_share, further_share] = self.chances(&rough, wi.z, lanes);
         let mu = rough.table.between_cosines(wo.z);
-        let further =
-            self.ratios.mean(lanes, |eta| rough.table.lobe_density(rough.sides(eta).here, mu));
+        let further = rough.table.lobe_density(rough.middle.here, mu);
         let base_share = 1.0 - facet_share - further_share;
         facet_share * facet + (further_share * further + base_share) * even
     }
@@ -119,8 +118,7 @@ impl<'a> Glossy<'a> {
                 return above(reflect(wi, rough.table.ggx().visible_normal(wi, at)));
             }
             if happens(further_share / (1.0 - facet_share), &mut choice) {
-                let side = rough.sides(self.ratios.choose(lanes, &mut choice)).here;
-                return above(rough.table.sample_lobe(side, at));
+                return above(rough.table.sample_lobe(rough.middle.here, at));
             }
         }
         above(cosine_hemisphere(DVec2::from_array(at)))
@@ -135,29 +133,20 @@ impl<'a> Glossy<'a> {
             return whole * self.ratios.map(|eta| 1.0 - dielectric_reflectance(wi.z, eta));
         };
         let mu = rough.table.between_cosines(wi.z);
-        let coat = self.ratios.map(|eta| coat_albedo(&rough.sides(eta), mu));
+        let coat = self.ratios.map(|eta| {
+            let sides = rough.sides(eta);
+            coat_albedo(&sides, sides.here.shares(mu))
+        });
         coat + whole * (SampledSpectrum::ONE - coat)
     }
 
     /// The chances to follow what one facet reflects and what more of them do, and not the base.
     fn chances(&self, rough: &Rough, mu: f64, lanes: &SampledSpectrum) -> [f64; 2] {
         let between = rough.table.between_cosines(mu);
-        let (mut facet, mut further, mut base) = (0.0, 0.0, 0.0);
-        let mut add = |weight: f64, below: f64, eta: f64| {
-            let sides = rough.sides(eta);
-            let shares = sides.here.shares(between);
-            facet += weight * shares.reflected;
-            further += weight * shares.loss * (1.0 - sides.through);
-            base += below * (1.0 - coat_albedo(&sides, between));
-        };
-        let below = *lanes * self.entered_albedo();
-        if self.ratios.is_dispersive {
-            for (j, eta) in self.ratios.eta.0.iter().enumerate() {
-                add(lanes.0[j], below.0[j], *eta);
-            }
-        } else {
-            add(1.0, below.0.iter().sum(), self.ratios.eta.0[0]);
-        }
+        let shares = rough.middle.here.shares(between);
+        let facet = shares.reflected;
+        let further = shares.loss * (1.0 - rough.middle.through);
+        let base = self.entered_albedo().dot(*lanes) * (1.0 - facet - further).max(0.0);
         let all = facet + further + base;
         if all > 0.0 {
             [facet / all, further / all]
@@ -173,17 +162,15 @@ impl<'a> Glossy<'a> {
 }
 
 /// R(µ): what a rough coat reflects in all, by one facet or more.
-fn coat_albedo(sides: &Sides, mu: Between) -> f64 {
-    let shares = sides.here.shares(mu);
+fn coat_albedo(sides: &Sides, shares: Shares) -> f64 {
     shares.reflected + shares.loss * (1.0 - sides.through)
 }
 
-/// What a rough coat reflects by more than one facet, but for µₒ.
-fn returned(sides: &Sides, cosines: [Between; 2]) -> f64 {
-    let [i, o] = cosines.map(|mu| sides.here.shares(mu).loss);
+/// What a rough coat reflects by more than one facet, but for µₒ, by the losses at both cosines.
+fn returned(sides: &Sides, losses: [f64; 2]) -> f64 {
     let mean = sides.here.mean_loss();
     if mean > 0.0 {
-        (1.0 - sides.through) * i * o / mean * FRAC_1_PI
+        (1.0 - sides.through) * losses[0] * losses[1] / mean * FRAC_1_PI
     } else {
         0.0
     }

@@ -78,21 +78,19 @@ impl<'a> Interface<'a> {
         let Some(pair) = self.pair(wi, wo) else {
             return 0.0;
         };
-        self.ratios.mean(lanes, |eta| {
-            let sides = pair.rough.sides(eta);
-            let loss = sides.here.shares(pair.mu_i).loss;
-            let (chance, side) = pair.returned_to(&sides);
-            let lobe = pair.rough.table.lobe_density(side, pair.mu_o) * wo.z.abs() * FRAC_1_PI;
-            (1.0 - loss) * pair.single(eta) + loss * chance * lobe
-        })
+        let sides = &pair.rough.middle;
+        let loss = sides.here.shares(pair.mu_i).loss;
+        let (chance, side) = pair.returned_to(sides);
+        let lobe = pair.rough.table.lobe_density(side, pair.mu_o) * wo.z.abs() * FRAC_1_PI;
+        let single = self.ratios.mean(lanes, |eta| pair.single(eta));
+        (1.0 - loss) * single + loss * chance * lobe
     }
 
     pub(super) fn sample(&self, wi: DVec3, lanes: &SampledSpectrum, u: [f64; 3]) -> Option<DVec3> {
         let rough = self.rough?;
         let table = rough.table;
         let mut choice = u[2];
-        let eta = self.ratios.choose(lanes, &mut choice);
-        let sides = rough.sides(eta);
+        let sides = &rough.middle;
         let loss = sides.here.shares(table.between_cosines(wi.z)).loss;
         if happens(loss, &mut choice) {
             return if happens(sides.through, &mut choice) {
@@ -101,6 +99,7 @@ impl<'a> Interface<'a> {
                 above(table.sample_lobe(sides.here, [u[0], u[1]]))
             };
         }
+        let eta = self.ratios.choose(lanes, &mut choice);
         let h = table.ggx().visible_normal(wi, [u[0], u[1]]);
         if happens(dielectric_reflectance(wi.dot(h), eta), &mut choice) {
             above(reflect(wi, h))
@@ -144,8 +143,7 @@ impl<'a> Pair<'a> {
 
     /// One facet's share of the light, before other facets hide it, per sr of wo.
     fn single(&self, eta: f64) -> f64 {
-        let joint =
-            if self.wo.z > 0.0 { Some(self.mirrored(eta)) } else { self.refracted(eta) };
+        let joint = if self.wo.z > 0.0 { Some(self.mirrored(eta)) } else { self.refracted(eta) };
         joint.map_or(0.0, |joint| joint.f * joint.visible)
     }
 

@@ -164,18 +164,23 @@ impl Ratios {
 #[derive(Clone, Copy, Debug)]
 struct Rough<'a> {
     table: &'a AlbedoTable,
-    /// Its sides where all lanes share them.
-    shared: Option<Sides<'a>>,
+    /// The sides of the middle lane, by which all lanes choose what to follow.
+    middle: Sides<'a>,
+    is_dispersive: bool,
 }
 
 impl<'a> Rough<'a> {
     fn new(table: &'a AlbedoTable, ratios: &Ratios) -> Self {
-        let shared = (!ratios.is_dispersive).then(|| table.sides(ratios.eta.0[0]));
-        Self { table, shared }
+        let middle = table.sides(ratios.eta.0[LANES / 2]);
+        Self { table, middle, is_dispersive: ratios.is_dispersive }
     }
 
     fn sides(&self, eta: f64) -> Sides<'a> {
-        self.shared.unwrap_or_else(|| self.table.sides(eta))
+        if self.is_dispersive {
+            self.table.sides(eta)
+        } else {
+            self.middle
+        }
     }
 }
 
