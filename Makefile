@@ -4,12 +4,13 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
+PEERS := build/peers
 CORE := python/lamplit/_core.abi3.so
 RUST := Cargo.toml Cargo.lock $(shell find crates -name '*.rs' -o -name Cargo.toml)
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test check format bench docs wheel clean
+.PHONY: help demo test check format bench validate docs wheel clean
 
 help: ## say what each target does
 	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 10
@@ -59,8 +60,22 @@ format: $(VENV)/.tools ## put the code into its format
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
 
-bench: $(CORE) $(VENV)/.tools ## measure speed against peers; writes benchmarks/results/
-	$(BIN)/python benchmarks/run.py
+# Mitsuba 3, which benches and validation hold Lamplit against; its LLVM variants need an LLVM.
+$(PEERS)/.ready: requirements/peers.lock
+	@echo "Installing Mitsuba into $(PEERS): once, half a minute ..."
+	@$(PYTHON) -m venv --clear $(PEERS)
+	@$(PEERS)/bin/python -m pip install --quiet --no-deps -r $<
+	@ls /usr/lib/*/libLLVM-19.so >/dev/null 2>&1 || { [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null \
+	  && echo "Installing Debian's libllvm19 for Mitsuba ..." \
+	  && apt-get update -qq && apt-get install -qq libllvm19 >/dev/null; } \
+	  || echo "No LLVM 19 (apt-get install libllvm19): Mitsuba's LLVM variants are left out."
+	@touch $@
+
+bench: $(CORE) $(VENV)/.tools $(PEERS)/.ready ## measure speed against peers; PARTS="unlit ..." for some of it
+	$(BIN)/python benchmarks/run.py $(if $(PARTS),--parts $(PARTS))
+
+validate: $(CORE) $(VENV)/.tools $(PEERS)/.ready ## hold the physics against closed forms and Mitsuba; writes docs/validation.md
+	$(BIN)/python benchmarks/validate.py $(CASES)
 
 docs: $(CORE) $(VENV)/.tools ## make the pictures, tables and API pages of docs/ again
 	$(BIN)/python docs/make.py

@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0 OR MIT
 """`make bench`: how fast Lamplit is, in ratios measured side by side in one run.
 
-Writes ``benchmarks/results/``: ``bench.json`` with all numbers and the machine's name, ``bench.md``
-as a table, ``kernel.png`` as a picture. Takes a few minutes; leave the machine alone meanwhile.
+Leave the machine alone meanwhile. Each part writes a JSON file, a table and pictures into
+``benchmarks/results/``, with the machine's name:
+
+    unlit    time to the same error on unlit lamps, against Mitsuba 3 (nine minutes): ``unlit.*``
+    path     what the `path` method costs by wavelengths, threads, memory (four minutes): ``path.*``
+    kernel   rays against Embree, the Hall method, the start of the program: ``bench.*``
 """
 
 from __future__ import annotations
 
 import argparse
 import json
-import os
-import platform
 import statistics
 import subprocess
 import sys
@@ -23,6 +25,9 @@ from typing import Any, Literal
 import kernel
 import numpy as np
 import numpy.typing as npt
+import path_method
+import unlit
+from machine import machine, machine_line
 
 import lamplit as ll
 from lamplit.lamps import write_lamp
@@ -30,41 +35,38 @@ from lamplit.lamps import write_lamp
 HERE = Path(__file__).resolve().parent
 RESULTS = HERE / "results"
 ROUNDS = 5
+PARTS = ("unlit", "path", "kernel")
 
 
 def main() -> None:
-    """Run every measurement and write the results."""
+    """Run the measurements that were asked for and write the results."""
     parser = argparse.ArgumentParser(description="how fast Lamplit is")
+    parser.add_argument("--parts", nargs="*", choices=PARTS, default=PARTS, help="all by default")
     parser.add_argument("--triangles", type=int, nargs="*", default=[100_000, 1_000_000, 5_000_000])
     options = parser.parse_args()
+    RESULTS.mkdir(exist_ok=True)
+    if "unlit" in options.parts:
+        unlit.measure(RESULTS)
+    if "path" in options.parts:
+        path_method.measure(RESULTS)
+    if "kernel" in options.parts:
+        measure_founding(options.triangles)
+    print(f"written to {RESULTS}")
+
+
+def measure_founding(triangles: list[int]) -> None:
+    """Measure the kernel at these numbers of triangles, the Hall method and the start-up."""
     build = "cargo build --release --locked --quiet --package lamplit-core --example ray_kernel"
     subprocess.run(build.split(), check=True)
     results: dict[str, Any] = {"machine": machine(), "version": ll.__version__}
-    results["kernel"] = [measure_kernel(count) for count in options.triangles]
+    results["kernel"] = [measure_kernel(count) for count in triangles]
     results["hall"] = measure_hall()
     results["help_s"] = measure_help()
-    RESULTS.mkdir(exist_ok=True)
     (RESULTS / "bench.json").write_text(json.dumps(results, indent=2) + "\n", encoding="utf-8")
     page = as_markdown(results)
     (RESULTS / "bench.md").write_text(page, encoding="utf-8")
     draw_kernel(results["kernel"], RESULTS / "kernel.png")
     print(page)
-    print(f"written to {RESULTS}: bench.json, bench.md, kernel.png")
-
-
-def machine() -> dict[str, Any]:
-    """Return what the numbers were measured on."""
-    lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-    names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
-    rust = subprocess.run(["rustc", "--version"], check=True, capture_output=True, text=True)
-    return {
-        "processor": names[0] if names else platform.processor(),
-        "cores": os.cpu_count(),
-        "load_before": round(os.getloadavg()[0], 2),
-        "system": platform.platform(),
-        "rust": rust.stdout.strip(),
-        "python": platform.python_version(),
-    }
 
 
 def lamp_scene(folder: Path, triangles: int) -> ll.Scene:
@@ -142,13 +144,11 @@ def measure_help() -> float:
 
 def as_markdown(results: dict[str, Any]) -> str:
     """Return the results as tables."""
-    about, hall = results["machine"], results["hall"]
-    load, cores = about["load_before"], about["cores"]
+    hall = results["hall"]
     lines = [
         "# Benchmarks",
         "",
-        f"`make bench` on {about['processor']}, {cores} cores (load {load} before the start),",
-        f"{about['rust']}, Python {about['python']}.",
+        f"`make bench` on {machine_line(results['machine'])}.",
         "",
         "## The triangle kernel against Embree 4 (robust mode)",
         "",

@@ -1,20 +1,46 @@
 # SPDX-License-Identifier: Apache-2.0 OR MIT
-"""The compiled part of Lamplit: arrays in, arrays out."""
+"""The compiled part of Lamplit: arrays in, arrays out.
+
+A spectrum is an array over all wavelengths of the picture, rising. Lengths are in mm. A group is
+the number of a light group. A fault of the input is a `ValueError` with one line.
+"""
 
 from collections.abc import Callable, Sequence
-from typing import Any, Final, TypeAlias, final
+from typing import Any, Final, TypeAlias, TypedDict, final
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["LANES", "HallTerms", "Render", "Scene", "SceneBuilder", "__version__"]
+__all__ = [
+    "LANES",
+    "Background",
+    "Emission",
+    "HallMethod",
+    "HallTerms",
+    "Matter",
+    "PathMethod",
+    "Render",
+    "Scene",
+    "SceneBuilder",
+    "__version__",
+]
 
 __version__: Final[str]
 LANES: Final[int]
 
-_Spectrum: TypeAlias = NDArray[np.float64]
+_Array: TypeAlias = NDArray[np.float64]
+_Spectrum: TypeAlias = _Array
 _Triple: TypeAlias = Sequence[float]
+#: Name, material number, priority.
 _Body: TypeAlias = tuple[str, int, int]
+
+class _Ledger(TypedDict):
+    escaped: float
+    absorbed: dict[str, float]
+    cut_by_depth: float
+    lost: float
+    chance: float
+    gap: float
 
 @final
 class HallTerms:
@@ -31,32 +57,108 @@ class HallTerms:
     ) -> HallTerms: ...
 
 @final
+class Matter:
+    @staticmethod
+    def dielectric(
+        index: _Spectrum,
+        index_d: float,
+        absorption_per_mm: _Spectrum,
+        *,
+        scattering_per_mm: _Spectrum | None = None,
+        anisotropy: float = 0.0,
+    ) -> Matter: ...
+    @staticmethod
+    def conductor(
+        n: _Spectrum,
+        k: _Spectrum,
+        factor: float,
+        *,
+        lacquer: tuple[_Spectrum, _Spectrum] | None = None,
+    ) -> Matter: ...
+    @staticmethod
+    def mirror(reflectance: _Spectrum) -> Matter: ...
+    @staticmethod
+    def diffuse(reflectance: _Spectrum) -> Matter: ...
+    @staticmethod
+    def transmitter(reflectance: _Spectrum, transmittance: _Spectrum) -> Matter: ...
+    @staticmethod
+    def checker(first: _Spectrum, second: _Spectrum, square_mm: float) -> Matter: ...
+    @staticmethod
+    def glossy(index: _Spectrum, reflectance: _Spectrum) -> Matter: ...
+
+@final
+class Background:
+    @staticmethod
+    def constant(radiance: _Spectrum, group: int) -> Background: ...
+    @staticmethod
+    def gradient(zenith: _Spectrum, nadir: _Spectrum, group: int) -> Background: ...
+    @staticmethod
+    def sky(
+        zenith: _Spectrum,
+        ground: _Spectrum,
+        group: int,
+        *,
+        kind: int | None = None,
+        towards_sun: _Triple | None = None,
+    ) -> Background: ...
+    @staticmethod
+    def image(
+        pixels: NDArray[np.float32], bases: Sequence[_Spectrum], turn_rad: float, group: int
+    ) -> Background: ...
+    def add_soft_box(
+        self,
+        radiance: _Spectrum,
+        centre_mm: _Triple,
+        half_width_mm: _Triple,
+        half_height_mm: _Triple,
+        edge_softness: float,
+        group: int,
+    ) -> None: ...
+    def add_sun(
+        self, radiance: _Spectrum, towards: _Triple, angular_radius_rad: float, group: int
+    ) -> None: ...
+
+@final
+class Emission:
+    @staticmethod
+    def radiance(radiance: _Spectrum) -> Emission: ...
+    @staticmethod
+    def flux(flux: _Spectrum) -> Emission: ...
+    def set_cosine(self, exponent: float) -> None: ...
+    def set_intensities(
+        self,
+        polar_rad: _Array,
+        azimuths_rad: _Array,
+        intensities: _Array,
+        axes: Sequence[_Triple],
+    ) -> None: ...
+
+@final
 class SceneBuilder:
     def __new__(cls, count: int) -> SceneBuilder: ...
-    def add_dielectric(
-        self, index: _Spectrum, index_d: float, absorption_per_mm: _Spectrum, hall: HallTerms
+    def add_material(
+        self,
+        matter: Matter,
+        hall: HallTerms,
+        *,
+        roughness: float = 0.0,
+        texture: tuple[_Triple, float] | None = None,
     ) -> int: ...
-    def add_conductor(self, n: _Spectrum, k: _Spectrum, factor: float, hall: HallTerms) -> int: ...
-    def add_mirror(self, reflectance: _Spectrum, hall: HallTerms) -> int: ...
-    def add_diffuse(self, reflectance: _Spectrum, hall: HallTerms) -> int: ...
-    def add_checker(
-        self, first: _Spectrum, second: _Spectrum, square_mm: float, hall: HallTerms
-    ) -> int: ...
-    def add_glossy(self, index: _Spectrum, reflectance: _Spectrum, hall: HallTerms) -> int: ...
     def add_mesh(
         self,
         owner: _Body,
-        vertices_mm: NDArray[np.float64],
+        vertices_mm: _Array,
         triangles: NDArray[np.uint32],
-        normals: NDArray[np.float64] | None = None,
-    ) -> None: ...
+        normals: _Array | None = None,
+    ) -> int: ...
     def add_primitive(
         self,
         owner: _Body,
         kind: str,
         numbers: Sequence[float],
         transform: Sequence[Sequence[float]],
-    ) -> None: ...
+    ) -> int: ...
+    def add_emission(self, body: int, emission: Emission, group: int) -> None: ...
     def set_camera(
         self,
         position_mm: _Triple,
@@ -65,24 +167,26 @@ class SceneBuilder:
         *,
         field_of_view_deg: float | None = None,
         height_mm: float | None = None,
+        lens_mm: tuple[float, float] | None = None,
     ) -> None: ...
     def add_point_light(self, strength: _Spectrum, position_mm: _Triple) -> None: ...
-    def add_directional_light(self, strength: _Spectrum, direction: _Triple) -> None: ...
+    def add_directional_light(self, strength: _Spectrum, travels: _Triple) -> None: ...
     def add_sphere_light(
         self, strength: _Spectrum, centre_mm: _Triple, radius_mm: float
     ) -> None: ...
     def set_ambient(self, strength: _Spectrum) -> None: ...
-    def set_constant_background(self, radiance: _Spectrum) -> None: ...
-    def set_gradient_background(self, zenith: _Spectrum, nadir: _Spectrum) -> None: ...
-    def add_soft_box(
-        self,
-        radiance: _Spectrum,
-        centre_mm: _Triple,
-        half_width_mm: _Triple,
-        half_height_mm: _Triple,
-        edge_softness: float,
-    ) -> None: ...
-    def build(self, colour_matching: Sequence[_Spectrum]) -> Scene: ...
+    def set_background(self, background: Background) -> None: ...
+    def build(self, colour_matching: Sequence[_Spectrum], groups: Sequence[str]) -> Scene: ...
+
+@final
+class HallMethod:
+    def __new__(
+        cls, *, max_depth: int, contribution_limit: float, dispersion_groups: int, shadows: bool
+    ) -> HallMethod: ...
+
+@final
+class PathMethod:
+    def __new__(cls, *, max_depth: int, split_depth: int, roulette_below: float) -> PathMethod: ...
 
 @final
 class Scene:
@@ -93,27 +197,36 @@ class Scene:
         width: int,
         height: int,
         samples: int,
+        method: HallMethod | PathMethod,
         *,
         first_sample: int = 0,
-        sampling: str = "grid",
+        adaptive: bool = False,
+        target_error: float | None = None,
+        time_budget_s: float | None = None,
+        sampling: str = "sobol",
         filter: str = "gaussian",
         seed: int = 1,
-        max_depth: int = 12,
-        contribution_limit: float = 1e-4,
-        dispersion_groups: int = 1,
-        shadows: bool = True,
         bands_per_lane: int = 0,
+        layers: bool = False,
         threads: int = 0,
         tile: int = 64,
         progress: Callable[[int, int], object] | None = None,
     ) -> Render: ...
+    def features(self, width: int, height: int, *, threads: int = 0) -> _Array: ...
 
 @final
 class Render:
     @property
     def interrupted(self) -> bool: ...
-    def xyz(self) -> NDArray[np.float64]: ...
-    def xyz_standard_error(self) -> NDArray[np.float64]: ...
+    @property
+    def groups(self) -> list[str]: ...
+    @property
+    def pilot_samples(self) -> int: ...
+    def xyz(self) -> _Array: ...
+    def xyz_standard_error(self) -> _Array: ...
     def samples(self) -> NDArray[np.uint32]: ...
-    def spectral_radiance(self) -> NDArray[np.float64]: ...
+    def spectral_radiance(self) -> _Array: ...
+    def layers(self) -> _Array: ...
+    def layers_standard_error(self) -> _Array: ...
+    def ledger(self) -> _Ledger | None: ...
     def statistics(self) -> dict[str, Any]: ...

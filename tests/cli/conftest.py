@@ -79,6 +79,7 @@ class Painter:
             band_centres_nm=np.array([450.0, 650.0]),
             samples=done,
             samples_asked=asked,
+            samples_per_pixel=np.full((height, width), done, np.uint32),
             seed=scene.image.seed,
             scene=scene,
             colour=colour,

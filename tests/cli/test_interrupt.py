@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lamplit.report.exr import read_exr
+from lamplit.report.exr_file import read_exr
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ import pytest
 
 from lamplit.cli.stopping import stop_signals
 from lamplit.report.comparison import COMPARISON_FILES
-from lamplit.report.exr import read_exr
+from lamplit.report.exr_file import read_exr
 
 if TYPE_CHECKING:
     from tests.cli.conftest import Painter

@@ -20,6 +20,14 @@ Table = dict[str, Any]
 
 UNTURNED = np.eye(4).tolist()
 
+#: How far Hall's method goes unless a test says otherwise: every ray, for 64 steps, no shadows.
+HALL: Table = {
+    "max_depth": 64,
+    "contribution_limit": 0.0,
+    "dispersion_groups": 1,
+    "shadows": False,
+}
+
 
 class LaneScene:
     """A scene of 16 lanes without meaning, whose radiances come back lane by lane.
@@ -29,6 +37,7 @@ class LaneScene:
 
     def __init__(self) -> None:
         self.builder = _core.SceneBuilder(_core.LANES)
+        self.surround(0.0)
 
     @staticmethod
     def spectrum(values: ArrayLike) -> Array:
@@ -46,17 +55,33 @@ class LaneScene:
     def glass(self, index: ArrayLike, absorption: ArrayLike = 0.0, **terms: Any) -> int:
         """Add a transparent material; lanes that share directions follow the first one's."""
         n = self.spectrum(index)
-        return self.builder.add_dielectric(
-            n, float(n[0]), self.spectrum(absorption), self.terms(**terms)
-        )
+        matter = _core.Matter.dielectric(n, float(n[0]), self.spectrum(absorption))
+        return self.builder.add_material(matter, self.terms(**terms))
 
     def mirror(self, reflectance: ArrayLike = 1.0, **terms: Any) -> int:
         """Add a mirror."""
-        return self.builder.add_mirror(self.spectrum(reflectance), self.terms(**terms))
+        matter = _core.Matter.mirror(self.spectrum(reflectance))
+        return self.builder.add_material(matter, self.terms(**terms))
+
+    def metal(self, n: ArrayLike, k: ArrayLike, factor: float = 1.0) -> int:
+        """Add a metal."""
+        matter = _core.Matter.conductor(self.spectrum(n), self.spectrum(k), factor)
+        return self.builder.add_material(matter, self.terms())
 
     def matt(self, reflectance: ArrayLike = 1.0, **terms: Any) -> int:
         """Add a matt material."""
-        return self.builder.add_diffuse(self.spectrum(reflectance), self.terms(**terms))
+        matter = _core.Matter.diffuse(self.spectrum(reflectance))
+        return self.builder.add_material(matter, self.terms(**terms))
+
+    def glossy(self, index: ArrayLike, base: ArrayLike, **terms: Any) -> int:
+        """Add a matt material under a smooth clear coat."""
+        matter = _core.Matter.glossy(self.spectrum(index), self.spectrum(base))
+        return self.builder.add_material(matter, self.terms(**terms))
+
+    def checker(self, first: ArrayLike, second: ArrayLike, square_mm: float) -> int:
+        """Add a matt material in two colours."""
+        spectra = self.spectrum(first), self.spectrum(second)
+        return self.builder.add_material(_core.Matter.checker(*spectra, square_mm), self.terms())
 
     def body(
         self,
@@ -86,11 +111,12 @@ class LaneScene:
 
     def gradient(self, zenith: ArrayLike = 1.0, nadir: ArrayLike = 0.0) -> None:
         """Set a background: usually of radiance (1 + y)/2 in the direction (x, y, z)."""
-        self.builder.set_gradient_background(self.spectrum(zenith), self.spectrum(nadir))
+        spectra = self.spectrum(zenith), self.spectrum(nadir)
+        self.builder.set_background(_core.Background.gradient(*spectra, 0))
 
     def surround(self, radiance: ArrayLike = 1.0) -> None:
         """Set a background that is the same all round."""
-        self.builder.set_constant_background(self.spectrum(radiance))
+        self.builder.set_background(_core.Background.constant(self.spectrum(radiance), 0))
 
     def look(
         self,
@@ -106,12 +132,17 @@ class LaneScene:
         height_mm = None if field_of_view_deg else height_mm
         self.builder.set_camera(*places, height_mm=height_mm, field_of_view_deg=field_of_view_deg)
 
+    def build(self, weight: float = 0.0) -> _core.Scene:
+        """Return the scene; X, Y and Z are the sum of all lanes times ``weight``."""
+        return self.builder.build([self.spectrum(weight)] * 3, ["background"])
+
     def render(self, width: int = 1, height: int = 1, **settings: Any) -> _core.Render:
-        """Render the middle of every pixel, following every ray for 64 steps."""
-        dark = self.spectrum(0.0)
-        usual: Table = {"filter": "box", "max_depth": 64, "contribution_limit": 0.0, "threads": 1}
-        usual |= {"samples": 1, "bands_per_lane": 1, "shadows": False}
-        return self.builder.build([dark] * 3).render(width, height, **(usual | settings))
+        """Render the middle of every pixel by Hall's method, following every ray for 64 steps."""
+        usual: Table = {"filter": "box", "sampling": "grid", "threads": 1, "samples": 1}
+        usual |= {"bands_per_lane": 1}
+        hall = HALL | {name: settings.pop(name) for name in HALL.keys() & settings.keys()}
+        usual["method"] = _core.HallMethod(**hall)
+        return self.build().render(width, height, **(usual | settings))
 
     def radiance(self, width: int = 1, height: int = 1, **settings: Any) -> Array:
         """Render and return the lanes, (height, width, 16); (16,) of a single pixel."""
@@ -141,7 +172,7 @@ def scene_of(tmp_path: Path) -> Callable[..., Scene]:
                 "target_mm": [0.0, 0.0, 0.0],
                 "height_mm": 20.0,
             },
-            "image": {"width": 8, "height": 8, "samples": 1, "filter": "box"},
+            "image": {"method": "hall", "width": 8, "height": 8, "samples": 1, "filter": "box"},
             "hall": {"contribution_limit": 0.0},
             "background": {"kind": "constant", "source": "E", "luminance_cd_m2": 100.0},
         }

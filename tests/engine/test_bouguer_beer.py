@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 import lamplit as ll
 from lamplit.report.develop import develop
-from lamplit.report.exr import read_exr, write_exr
+from lamplit.report.exr import write_exr
+from lamplit.report.exr_file import read_exr
 
 Array = NDArray[np.float64]
 

@@ -31,7 +31,7 @@ def test_a_metal_reflects_by_its_complex_index_times_its_factor(
 ) -> None:
     scene, angle = lane_scene(), np.radians(degrees)
     scene.surround(3.0)
-    scene.builder.add_conductor(scene.spectrum(N), scene.spectrum(K), 0.85, scene.terms())
+    scene.metal(N, K, 0.85)
     scene.body("plane", [0, 0, 0, 0, 0, 1], 0)
     scene.look((90 * np.sin(angle), 0, 90 * np.cos(angle)), (0, 0, 0))
     expected = 3.0 * 0.85 * fresnel(angle, 1.0, N + 1j * K)
@@ -43,7 +43,7 @@ def test_a_metal_under_glass_reflects_by_its_index_relative_to_the_glass(
 ) -> None:
     scene, n, angle = lane_scene(), 1.6, np.radians(30.0)
     scene.surround()
-    scene.builder.add_conductor(scene.spectrum(N), scene.spectrum(K), 1.0, scene.terms())
+    scene.metal(N, K)
     scene.body("box", [-90, -90, -5, 90, 90, 5], scene.glass(n, f_sr=0.0, f_st=1.0))
     scene.body("disc", [0, 0, 0, 0, 0, 1, 80], 0)
     scene.look((90 * np.sin(angle), 0, 90 * np.cos(angle)), (0, 0, 0))
@@ -57,8 +57,7 @@ def test_gloss_takes_its_share_and_leaves_the_rest_to_the_base(lane_scene: Maker
     scene.surround(2.0)
     scene.builder.set_ambient(scene.spectrum(0.5))
     scene.builder.add_directional_light(scene.spectrum(7.0), (0.0, -0.6, -0.8))
-    terms = scene.terms(k_sr=0.9, k_sa=0.7, highlight_exponent=5.0)
-    scene.builder.add_glossy(scene.spectrum(n), scene.spectrum(base), terms)
+    scene.glossy(n, base, k_sr=0.9, k_sa=0.7, highlight_exponent=5.0)
     scene.body("plane", [0, 0, 0, 0, 0, 1], 0)
     scene.look((90 * np.sin(angle), 0, 90 * np.cos(angle)), (0, 0, 0))
     f = fresnel(angle, 1.0, n)
@@ -70,8 +69,7 @@ def test_gloss_takes_its_share_and_leaves_the_rest_to_the_base(lane_scene: Maker
 def test_a_checker_changes_reflectance_from_square_to_square(lane_scene: Maker) -> None:
     scene, first, second = lane_scene(), np.linspace(0.1, 0.2, 16), np.linspace(0.9, 0.6, 16)
     scene.builder.set_ambient(scene.spectrum(1.0))
-    spectra = scene.spectrum(first), scene.spectrum(second)
-    scene.builder.add_checker(*spectra, 3.0, scene.terms())
+    scene.checker(first, second, 3.0)
     scene.body("plane", [0, 0, 0, 0, 1, 0], 0)
     scene.look((0, 90, 0), (0, 0, 0), up=(0, 0, -1), height_mm=20.0)
     got = scene.radiance(10, 10)

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from lamplit.engine.features import Features
 from lamplit.engine.image import Image
 from lamplit.spectrum import SpectralDistribution
 
@@ -66,6 +67,39 @@ def lamp_xyz(height: int, width: int, *, shift: float = 0.0) -> np.ndarray:
     return xyz + glow[..., None] * 2500.0 * np.array([1.1, 1.0, 0.36 * (1 - 0.4 * shift)])
 
 
+def two_layers(height: int = 12, width: int = 20) -> dict[str, Any]:
+    """Return the fields of an image whose light comes from a lens and from a lamp in it."""
+    lens = lamp_xyz(height, width)
+    lamp = np.zeros_like(lens)
+    lamp[3:6, 5:9] = (900.0, 700.0, 20.0)
+    return {
+        "xyz": lens + lamp,
+        "xyz_standard_error": np.full_like(lens, 0.25),
+        "layers": {"background": lens, "tail lamp": lamp},
+        "layers_standard_error": {
+            "background": np.full_like(lens, 0.2),
+            "tail lamp": np.full_like(lens, 0.15),
+        },
+    }
+
+
+def some_features(height: int, width: int) -> Features:
+    """Return features that differ from pixel to pixel, with nothing to be seen in the first."""
+    plane = np.arange(height * width, dtype=np.float64).reshape(height, width)
+    depth = 100.0 + plane / 7.0
+    depth[0, 0] = np.inf
+    body = (plane % 3).astype(np.int32) - 1
+    vectors = np.stack([plane, plane + 0.5, -plane], axis=-1)
+    return Features(
+        depth_mm=depth,
+        normal=vectors / 1e3,
+        body=body,
+        body_names=("lens", "housing of the lamp"),
+        albedo=vectors / 1e4,
+        interfaces=plane % 5,
+    )
+
+
 @pytest.fixture
 def make_image() -> Callable[..., Image]:
     """Return a maker of images; keyword arguments stand in for the usual fields."""
@@ -78,6 +112,7 @@ def make_image() -> Callable[..., Image]:
             "xyz_standard_error": 0.01 * np.abs(xyz),
             "samples": 16,
             "samples_asked": 16,
+            "samples_per_pixel": np.full(xyz.shape[:2], 16, np.uint32),
             "seed": 1,
             "scene": FlatScene(),
             "statistics": {"eye_rays": 20_000, "shadow_rays": 10_000, "lost_rays": {}},
@@ -89,3 +124,15 @@ def make_image() -> Callable[..., Image]:
         return Image(**(usual | fields))
 
     return make
+
+
+@pytest.fixture
+def features() -> Callable[[int, int], Features]:
+    """Return the maker of features."""
+    return some_features
+
+
+@pytest.fixture
+def layered_image(make_image: Callable[..., Image]) -> Callable[..., Image]:
+    """Return a maker of images that have two layers."""
+    return lambda **fields: make_image(**(two_layers() | fields))

@@ -12,10 +12,12 @@ import OpenEXR
 import pytest
 from colour.io.fichet2021 import PATTERN_FICHET2021
 
+from lamplit.engine import Features
 from lamplit.engine.image import Image
 from lamplit.errors import OutputError
 from lamplit.report.develop import develop
-from lamplit.report.exr import band_name, read_exr, write_exr
+from lamplit.report.exr import band_name, write_exr
+from lamplit.report.exr_file import read_exr
 
 MakeImage = Callable[..., Image]
 
@@ -41,7 +43,7 @@ def test_every_channel_is_float32_and_the_file_is_zip(
     write_exr(tmp_path / "a.exr", image, develop(image))
     read = read_exr(tmp_path / "a.exr")
     errors = {f"standard_error.{name}" for name in "XYZ"}
-    assert set(read.channels) == {*"XYZRGB"} | errors
+    assert set(read.channels) == {*"XYZRGB", "samples"} | errors
     assert {channel.dtype for channel in read.channels.values()} == {np.dtype(np.float32)}
     assert read.attributes["compression"] == OpenEXR.ZIP_COMPRESSION
 
@@ -72,6 +74,28 @@ def test_the_header_says_how_to_make_the_file_again(tmp_path: Path, make_image: 
     assert header["lamplit.white"] == "D65"
     assert header["lamplit.command"] == "lamplit render scene.toml -o out"
     assert json.loads(header["lamplit.statistics"])["eye_rays"] == 20_000
+
+
+def test_features_are_channels_with_units_and_the_names_of_the_bodies(
+    tmp_path: Path, make_image: MakeImage, features: Callable[[int, int], Features]
+) -> None:
+    seen = features(24, 40)
+    counts = np.arange(24 * 40, dtype=np.uint32).reshape(24, 40) + 200_000
+    image = make_image(features=seen, samples_per_pixel=counts)
+    write_exr(tmp_path / "a.exr", image, develop(image))
+    read = read_exr(tmp_path / "a.exr")
+    assert {channel.dtype for channel in read.channels.values()} == {np.dtype(np.float32)}
+    assert np.array_equal(read.channels["samples"], counts)
+    assert np.array_equal(read.channels["depth.mm"], seen.depth_mm.astype(np.float32))
+    assert np.isinf(read.channels["depth.mm"][0, 0])
+    assert np.array_equal(read.channels["body"], seen.body)
+    assert np.array_equal(read.channels["interfaces"], seen.interfaces)
+    assert np.array_equal(read.vectors("normal."), seen.normal.astype(np.float32))
+    assert np.array_equal(read.vectors("albedo."), seen.albedo.astype(np.float32))
+    names = json.loads(read.attributes["lamplit.bodies"])
+    assert names[int(read.channels["body"][0, 2])] == "housing of the lamp"
+    for name in ("depth.mm: mm", "normal.X/Y/Z", "albedo.X/Y/Z", "interfaces: count"):
+        assert name in read.attributes["lamplit.units"]
 
 
 def with_bands(make_image: MakeImage) -> Image:

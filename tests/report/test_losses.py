@@ -12,7 +12,8 @@ import pytest
 
 from lamplit.engine.image import Image
 from lamplit.report.develop import develop
-from lamplit.report.exr import read_exr, write_exr
+from lamplit.report.exr import write_exr
+from lamplit.report.exr_file import read_exr
 from lamplit.report.losses import Losses
 from lamplit.report.summary import summary
 

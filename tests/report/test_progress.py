@@ -56,3 +56,50 @@ def test_a_terminal_gets_a_bar() -> None:
         for done in range(11):
             progress(done, 10)
     assert "100%" in terminal.getvalue()
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+    """Put a clock in place of the machine's, and return what it shows."""
+    shown = [0.0]
+    monkeypatch.setattr("lamplit.report.progress.time.monotonic", lambda: shown[0])
+    return shown
+
+
+def test_samples_per_pixel_and_paths_per_second_are_told(clock: list[float]) -> None:
+    log = StringIO()
+    with Progress("Rendering", log, pixels=1000) as progress:
+        clock[0] = 20.0
+        progress(16_000, 64_000)
+    assert "25 % after 20.0 s, 16 of 64 samples per pixel, 0.0008 million paths/s" in log.getvalue()
+
+
+def test_before_the_first_round_is_over_nobody_foretells_the_end(clock: list[float]) -> None:
+    log = StringIO()
+    with Progress("Rendering", log, pixels=1000, first_round=16_000) as progress:
+        clock[0] = 11.0
+        progress(9000, 65_536_000)
+        clock[0] = 40.0
+        progress(20_000, 80_000)
+    first, second = log.getvalue().splitlines()
+    assert first.startswith("Rendering: first round after 11.0 s, 9 samples per pixel")
+    assert "left" not in first
+    assert "25 % after 40.0 s, 20 of 80 samples per pixel" in second
+    assert second.endswith("about 2 min 00 s left")
+
+
+def test_a_time_budget_is_told_as_a_share_of_it(clock: list[float]) -> None:
+    log = StringIO()
+    with Progress("Rendering", log, pixels=1000, time_s=60.0) as progress:
+        clock[0] = 15.0
+        progress(3000, 65_536_000)
+    assert "25 % after 15.0 s, 3 samples per pixel" in log.getvalue()
+    assert "about 45.0 s left" in log.getvalue()
+
+
+def test_a_terminal_shows_the_details_beside_the_bar() -> None:
+    terminal = Terminal()
+    with Progress("Rendering", terminal, pixels=10, first_round=20) as progress:
+        progress(10, 10_000)
+        progress(100, 100)
+    assert "10 of 10 samples per pixel" in " ".join(terminal.getvalue().split())

@@ -9,8 +9,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from lamplit.engine import Ledger
 from lamplit.engine.image import Image
-from lamplit.report.develop import automatic_white, develop
+from lamplit.report.develop import View, automatic_white, develop
 from lamplit.report.gamut_mask import gamut_mask_picture
 from lamplit.report.summary import summary
 
@@ -84,10 +85,11 @@ def test_the_mask_marks_the_pixels_outside_and_no_other(make_image: MakeImage) -
 
 def test_automatic_white_leaves_one_pixel_in_a_hundred_above(make_image: MakeImage) -> None:
     grey = ramp() / [0.9, 1.0, 1.1]
-    white = automatic_white(make_image(xyz=grey))
+    view = View.of(make_image().scene)
+    white = automatic_white(grey, view)
     assert white == pytest.approx(100.0, rel=1e-3)
     assert (grey[..., 1] > white).sum() == 1
-    assert automatic_white(make_image(xyz=np.zeros((2, 2, 3)))) == 1.0
+    assert automatic_white(np.zeros((2, 2, 3)), view) == 1.0
 
 
 def test_automatic_white_leaves_a_saturated_red_its_colour(make_image: MakeImage) -> None:
@@ -99,6 +101,45 @@ def test_automatic_white_leaves_a_saturated_red_its_colour(make_image: MakeImage
     bright = picture.encoded[30, 10]
     assert bright[0] > 0.8
     assert bright[1:].max() < 0.25
+
+
+def test_the_summary_says_what_error_was_reached_and_how_fast(make_image: MakeImage) -> None:
+    xyz = np.full((10, 20, 3), 99.0)
+    image = make_image(
+        xyz=xyz,
+        xyz_standard_error=0.02 * 1.01 * xyz,
+        samples_per_pixel=np.repeat(np.array([[8], [24]], np.uint32), [5, 5], axis=0)
+        * np.ones((1, 20), np.uint32),
+        samples=16,
+        pilot_samples=4,
+        error_asked=0.02,
+        statistics={"eye_rays": 9000, "shadow_rays": 1000, "lost_rays": {}, "trace_s": 0.5},
+    )
+    numbers = summary(image, develop(image))
+    assert numbers["relative_error_rms"] == pytest.approx(0.02)
+    assert numbers["error_asked"] == 0.02
+    assert numbers["pilot_samples"] == 4
+    assert numbers["samples_per_pixel"] == {"fewest": 8, "mean": 16.0, "most": 24}
+    assert numbers["speed"] == {"rays_per_s": 20_000.0, "paths_per_s": 200 * 20 / 0.5}
+    assert numbers["ledger"] is None
+    assert summary(make_image(), develop(make_image()))["speed"]["rays_per_s"] is None
+
+
+def test_the_summary_has_the_ledger_and_the_notices(make_image: MakeImage) -> None:
+    ledger = Ledger(
+        escaped=0.5, absorbed={"lens": 0.4}, cut_by_depth=0.06, lost=0.03, chance=0.01, gap=0.0
+    )
+    image = make_image(ledger=ledger, notices=("nobody looks",), method="path")
+    numbers = json.loads(json.dumps(summary(image, develop(image)), allow_nan=False))
+    assert numbers["ledger"]["absorbed"] == {"lens": 0.4}
+    assert numbers["ledger"]["escaped"] == 0.5
+    assert numbers["notices"] == ["nobody looks"]
+    assert numbers["method"] == "path"
+
+
+def test_an_error_that_nobody_knows_is_none(make_image: MakeImage) -> None:
+    image = make_image(xyz_standard_error=np.full((24, 40, 3), np.inf))
+    assert summary(image, develop(image))["relative_error_rms"] is None
 
 
 def test_an_image_is_a_dataset_with_units_and_errors(make_image: MakeImage) -> None:

@@ -6,31 +6,42 @@ from __future__ import annotations
 import sys
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import typer
 
 if TYPE_CHECKING:
+    from rich.console import Console
+
     from lamplit.engine.image import Image
+
+
+def picture_rows(numbers: Mapping[str, Any]) -> dict[str, str]:
+    """Return what the summary of a picture says of it, for `show_table`."""
+    luminance, display = numbers["luminance_cd_m2"], numbers["display"]
+    xy, shares = numbers["chromaticity_xy_of_mean"], luminance["percentiles"]
+    spread = " | ".join(f"{shares[share]:.4g}" for share in ("5", "50", "95") if share in shares)
+    mean, error = luminance["mean"], luminance.get("mean_standard_error")
+    return {
+        "luminance, mean": f"{mean:.4g}{'' if error is None else f' ± {error:.2g}'} cd/m²",
+        "luminance, 5 | 50 | 95 %": f"{spread} cd/m²",
+        "chromaticity of the mean": "none: black" if xy is None else f"{xy[0]:.4f}, {xy[1]:.4f}",
+        f"outside {display['label']}": f"{100 * display['out_of_gamut_share']:.1f} % of the pixels",
+        "brighter than white": f"{100 * display['over_white_share']:.1f} % of the pixels",
+    }
 
 
 def show_results(
     image: Image, numbers: Mapping[str, str], directory: Path, files: Mapping[str, str]
 ) -> None:
     """Print ``numbers`` about ``image``, and ``files`` in ``directory`` with what is in each."""
-    from rich.console import Console
     from rich.markup import escape
 
     from lamplit.report.losses import Losses
 
-    console = Console(highlight=False, soft_wrap=True)
-    console.print(f"\n[bold]{escape(_heading(image))}[/bold]")
-    for title, lines in (("", numbers), (f"Files in {directory}", files)):
-        if title:
-            console.print(f"\n{escape(title)}")
-        width = max(map(len, lines), default=0) + 3
-        for name, text in lines.items():
-            console.print(f"  {escape(name.ljust(width))}[dim]{escape(text)}[/dim]")
+    console = show_table(_heading(image), numbers, directory, files)
+    for notice in image.notices:
+        console.print(f"\n[cyan]notice: {escape(notice)}[/cyan]")
     for warning in Losses.of(image).warnings():
         console.print(f"\n[yellow]warning: {escape(warning)}[/yellow]")
     if not image.complete:
@@ -38,6 +49,24 @@ def show_results(
             f"\n[yellow]stopped with {image.samples} of {image.samples_asked} samples per pixel; "
             "what is done is in the files[/yellow]"
         )
+
+
+def show_table(
+    heading: str, numbers: Mapping[str, str], directory: Path, files: Mapping[str, str]
+) -> Console:
+    """Print ``heading``, ``numbers``, and ``files`` in ``directory`` with what is in each."""
+    from rich.console import Console
+    from rich.markup import escape
+
+    console = Console(highlight=False, soft_wrap=True)
+    console.print(f"\n[bold]{escape(heading)}[/bold]")
+    for title, lines in (("", numbers), (f"Files in {directory}", files)):
+        if title:
+            console.print(f"\n{escape(title)}")
+        width = max(map(len, lines), default=0) + 3
+        for name, text in lines.items():
+            console.print(f"  {escape(name.ljust(width))}[dim]{escape(text)}[/dim]")
+    return console
 
 
 def end_if_refused(*images: Image, allow_lost: bool) -> None:
@@ -56,7 +85,10 @@ def end_if_refused(*images: Image, allow_lost: bool) -> None:
 
 def _heading(image: Image) -> str:
     samples = f"{image.samples} sample" + ("s" if image.samples != 1 else "")
+    counts = image.samples_per_pixel
+    fewest, most = int(counts.min()), int(counts.max())
+    spread = f" ({fewest} to {most})" if image.pilot_samples else ""
     return (
-        f"{image.scene.name or 'Scene'}: {image.width} × {image.height}, {samples} per pixel, "
-        f"{image.elapsed_s:.1f} s"
+        f"{image.scene.name or 'Scene'}: {image.width} × {image.height}, "
+        f"{samples} per pixel{spread}, {image.elapsed_s:.1f} s"
     )

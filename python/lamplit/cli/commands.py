@@ -15,6 +15,7 @@ from lamplit.errors import LamplitError, nearest_name
 COMMANDS = {
     "render": "Picture of the lamp: PNG, float EXR and numbers.",
     "compare": "RGB against spectral, side by side, with the colour differences.",
+    "mix": "Lit, unlit, dimmed: weigh and add the light groups of a render.",
     "check": "Is this scene sound: meshes, overlaps, spectra, memory.",
     "lamp": "Write a parametric example lamp to start from.",
     "materials": "What the library holds, with its references.",

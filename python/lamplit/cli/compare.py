@@ -12,20 +12,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from lamplit.cli.options import (
-    AllowLostOption,
-    DisplayOption,
-    Method,
-    MethodOption,
-    OutputOption,
-    SamplesOption,
-    SceneArgument,
-    SeedOption,
-    SetOption,
-    SizeOption,
-    ThreadsOption,
-)
-from lamplit.cli.overrides import command_line, overrides, scene_file
+from lamplit.cli.overrides import command_line
+from lamplit.cli.scene_run import SceneRun, renders
 from lamplit.cli.stopping import stop_signals
 from lamplit.errors import LamplitError
 
@@ -34,16 +22,9 @@ if TYPE_CHECKING:
     from lamplit.report.difference import Difference
 
 
+@renders
 def compare(
-    scene: SceneArgument,
-    output: OutputOption,
-    method: MethodOption = Method.hall,
-    samples: SamplesOption = None,
-    seed: SeedOption = None,
-    size: SizeOption = None,
-    threads: ThreadsOption = None,
-    set_: SetOption = None,
-    display: DisplayOption = None,
+    run: SceneRun,
     mark: Annotated[
         list[str] | None,
         typer.Option(
@@ -53,42 +34,42 @@ def compare(
             "Without it, the places that differ most.",
         ),
     ] = None,
-    allow_lost: AllowLostOption = False,
 ) -> None:
     """Render SCENE in RGB and in spectra, and lay the two side by side on one page.
 
-    Ctrl-C keeps what is done of the picture that is being made. Exit code 1: the files are
-    written, but the pictures are not to be trusted, since too many rays were lost.
+    Both by the method hall, whatever the scene says, unless --method asks for another. Ctrl-C
+    keeps what is done of the picture that is being made. Exit code 1: the files are written, but
+    the pictures are not to be trusted, since too many rays were lost.
     """
     from lamplit import engine
     from lamplit.cli.closing import end_if_refused
     from lamplit.report.atomic import prepare_output
     from lamplit.report.comparison import COMPARISON_FILES, write_comparison
-    from lamplit.report.develop import check_display
     from lamplit.report.difference import check_marks
     from lamplit.report.progress import Progress
-    from lamplit.scene import load_scene
 
-    changed = overrides(
-        assignments=set_ or (), samples=samples, seed=seed, size=size, display=display
-    )
     marks = None if mark is None else _places(mark)
-    loaded = load_scene(scene_file(scene), overrides=changed)
-    check_display(loaded)
-    check_marks(marks or (), width=loaded.image.width, height=loaded.image.height)
-    prepare_output(output, COMPARISON_FILES)
+    scene = run.load()
+    check_marks(marks or (), width=scene.image.width, height=scene.image.height)
+    prepare_output(run.output, COMPARISON_FILES)
     with stop_signals() as stop, Progress("Comparing") as progress:
         try:
-            pair = engine.compare(loaded, method=method.value, threads=threads, progress=progress)
+            pair = engine.compare(
+                scene,
+                method=run.method_name or "hall",
+                samples=run.samples,
+                threads=run.threads,
+                progress=progress,
+            )
         except engine.RenderInterrupted as stopped:
             stop.end_if_empty(stopped.image)
-            _keep(output, stopped.image)
+            _keep(run.output, stopped.image)
             raise typer.Exit(stop.exit_code) from None
     command = command_line(sys.argv)
     spectral, rgb = (replace(image, command=command) for image in (pair.spectral, pair.rgb))
-    difference = write_comparison(spectral, rgb, output, marks=marks)
-    _tell(output, spectral, difference)
-    end_if_refused(spectral, rgb, allow_lost=allow_lost)
+    difference = write_comparison(spectral, rgb, run.output, marks=marks)
+    _tell(run.output, spectral, difference)
+    end_if_refused(spectral, rgb, allow_lost=run.allow_lost)
 
 
 def _keep(output: Path, image: Image) -> None:

@@ -13,6 +13,7 @@ import typer
 class Method(str, Enum):
     """The transports there are."""
 
+    path = "path"
     hall = "hall"
 
 
@@ -37,7 +38,10 @@ SceneArgument = Annotated[
 OutputOption = Annotated[
     Path, typer.Option("-o", "--output", metavar="DIR", help="Where the results go.")
 ]
-MethodOption = Annotated[Method, typer.Option("--method", help="Transport.")]
+MethodOption = Annotated[
+    Method | None,
+    typer.Option("--method", help="Transport, instead of the scene's: physical, or the founding."),
+]
 SamplesOption = Annotated[
     int | None, typer.Option("--samples", min=1, help="Samples per pixel, instead of the scene's.")
 ]

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from lamplit.cli.options import DisplayName
+from lamplit.cli.options import DisplayName, Method
 from lamplit.errors import LamplitError
 
 if sys.version_info >= (3, 11):
@@ -25,6 +25,7 @@ _SIZE = re.compile(r"^(\d{1,6})[xX×](\d{1,6})$")
 def overrides(
     *,
     assignments: Sequence[str] = (),
+    method: Method | None = None,
     samples: int | None = None,
     seed: int | None = None,
     size: str | None = None,
@@ -48,8 +49,12 @@ def overrides(
                 f"{size!r} is no size; write width x height, such as 640x400", where="--size"
             )
         found |= {"image.width": int(match[1]), "image.height": int(match[2])}
-    space = None if display is None else display.value
-    named = {"image.samples": samples, "image.seed": seed, "display.space": space}
+    named = {
+        "image.method": None if method is None else method.value,
+        "image.samples": samples,
+        "image.seed": seed,
+        "display.space": None if display is None else display.value,
+    }
     return found | {key: value for key, value in named.items() if value is not None}
 
 

@@ -5,109 +5,142 @@ from __future__ import annotations
 
 import sys
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from lamplit.cli.options import (
-    AllowLostOption,
-    Bits,
-    BitsOption,
-    DisplayOption,
-    Method,
-    MethodOption,
-    OutputOption,
-    SamplesOption,
-    SceneArgument,
-    SeedOption,
-    SetOption,
-    SizeOption,
-    ThreadsOption,
-)
-from lamplit.cli.overrides import command_line, overrides, scene_file
+from lamplit.cli.options import Bits, BitsOption
+from lamplit.cli.overrides import command_line
+from lamplit.cli.scene_run import SceneRun, renders
 from lamplit.cli.stopping import stop_signals
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
+    from lamplit.engine import Ledger
     from lamplit.engine.image import Image
 
+#: How many bodies the line about the ledger names.
+_NAMED_BODIES = 4
 
+
+@renders
 def render(
-    scene: SceneArgument,
-    output: OutputOption,
-    method: MethodOption = Method.hall,
-    samples: SamplesOption = None,
-    seed: SeedOption = None,
-    size: SizeOption = None,
-    threads: ThreadsOption = None,
-    set_: SetOption = None,
-    display: DisplayOption = None,
-    bits: BitsOption = Bits.eight,
+    run: SceneRun,
+    error: Annotated[
+        float | None,
+        typer.Option(
+            "--error",
+            metavar="SHARE",
+            help="Sample until the relative error, root mean square over the pixels, is this: "
+            "0.01 is 1 %.",
+        ),
+    ] = None,
+    time: Annotated[
+        float | None,
+        typer.Option("--time", metavar="SECONDS", help="Sample for so long, at most."),
+    ] = None,
+    adaptive: Annotated[
+        bool | None,
+        typer.Option(
+            "--adaptive/--uniform",
+            help="Allot samples to pixels by their noise, or give all the same. "
+            "With --error adaptive, else uniform.",
+        ),
+    ] = None,
+    layers: Annotated[
+        bool, typer.Option("--layers", help="Also write each light group by itself, for mix.")
+    ] = False,
+    features: Annotated[
+        bool,
+        typer.Option("--features", help="Keep depth, normal, body, albedo in the EXR."),
+    ] = False,
     spectral: Annotated[
         bool, typer.Option("--spectral", help="Keep the spectrum of each pixel in the EXR.")
     ] = False,
     gamut_mask: Annotated[
         bool, typer.Option("--gamut-mask", help="Also draw which pixels the display cannot show.")
     ] = False,
-    allow_lost: AllowLostOption = False,
+    bits: BitsOption = Bits.eight,
 ) -> None:
     """Render SCENE: picture.png for the display, picture.exr with exact values, summary.json.
 
-    Ctrl-C keeps the samples that are done. Exit code 1: the files are written, but the picture is
-    not to be trusted, since too many rays were lost.
+    With --error or --time, --samples is the most that a pixel takes on average. Ctrl-C keeps the
+    samples that are done. Exit code 1: the files are written, but the picture is not to be
+    trusted, since too many rays were lost.
     """
     from lamplit import engine
     from lamplit.cli.closing import end_if_refused
     from lamplit.report.atomic import prepare_output
-    from lamplit.report.develop import check_display
     from lamplit.report.picture_files import picture_files, write_picture
     from lamplit.report.progress import Progress
-    from lamplit.scene import load_scene
 
-    changed = overrides(
-        assignments=set_ or (), samples=samples, seed=seed, size=size, display=display
+    scene = run.load()
+    asked: dict[str, Any] = {
+        "method": run.method_name,
+        "samples": run.samples,
+        "error": error,
+        "time_s": time,
+        "adaptive": adaptive,
+        "layers": layers,
+    }
+    settled = engine.plan(scene, **asked)
+    prepare_output(run.output, picture_files(layers=layers, gamut_mask=gamut_mask))
+    pixels = scene.image.width * scene.image.height
+    progress = Progress(
+        "Rendering",
+        pixels=pixels,
+        time_s=time,
+        first_round=engine.PILOT_SAMPLES * pixels if settled.adaptive else 0,
     )
-    loaded = load_scene(scene_file(scene), overrides=changed)
-    check_display(loaded)
-    contents = picture_files(gamut_mask=gamut_mask)
-    prepare_output(output, contents)
-    with stop_signals() as stop, Progress("Rendering") as progress:
+    with stop_signals() as stop, progress:
         try:
             image = engine.render(
-                loaded,
-                method=method.value,
-                threads=threads,
+                scene,
+                **asked,
+                threads=run.threads,
                 spectral_bands=spectral,
+                features=features,
                 progress=progress,
             )
         except engine.RenderInterrupted as stopped:
             image = stopped.image
     stop.end_if_empty(image)
     image = replace(image, command=command_line(sys.argv))
-    numbers = write_picture(
-        image,
-        output,
-        bits=16 if bits is Bits.sixteen else 8,
-        spectral=spectral,
-        gamut_mask=gamut_mask,
-    )
-    _tell(output, image, numbers, contents)
+    depth = 16 if bits is Bits.sixteen else 8
+    numbers = write_picture(image, run.output, bits=depth, spectral=spectral, gamut_mask=gamut_mask)
+    contents = picture_files(layers=bool(image.layers), gamut_mask=gamut_mask)
+    _tell(run.output, image, numbers, contents)
     stop.end_if_interrupted(image)
-    end_if_refused(image, allow_lost=allow_lost)
+    end_if_refused(image, allow_lost=run.allow_lost)
 
 
 def _tell(output: Path, image: Image, numbers: dict[str, Any], contents: dict[str, str]) -> None:
-    from lamplit.cli.closing import show_results
+    from lamplit.cli.closing import picture_rows, show_results
 
-    luminance, display = numbers["luminance_cd_m2"], numbers["display"]
-    xy, shares = numbers["chromaticity_xy_of_mean"], luminance["percentiles"]
-    spread = " | ".join(f"{shares[share]:.4g}" for share in ("5", "50", "95") if share in shares)
-    mean, error = luminance["mean"], luminance["mean_standard_error"]
-    rows = {
-        "luminance, mean": f"{mean:.4g}{'' if error is None else f' ± {error:.2g}'} cd/m²",
-        "luminance, 5 | 50 | 95 %": f"{spread} cd/m²",
-        "chromaticity of the mean": "none: black" if xy is None else f"{xy[0]:.4f}, {xy[1]:.4f}",
-        f"outside {display['label']}": f"{100 * display['out_of_gamut_share']:.1f} % of the pixels",
-        "brighter than white": f"{100 * display['over_white_share']:.1f} % of the pixels",
-    }
+    rows = picture_rows(numbers)
+    reached, speed = numbers["relative_error_rms"], numbers["speed"]
+    if reached is not None:
+        asked = "" if image.error_asked is None else f", {100 * image.error_asked:g} % was asked"
+        rows["relative error, rms"] = f"{100 * reached:.2g} %{asked}"
+    if speed["rays_per_s"]:
+        millions = [speed[name] / 1e6 for name in ("rays_per_s", "paths_per_s")]
+        rows["speed"] = f"{millions[0]:.3g} million rays/s, {millions[1]:.3g} million paths/s"
+    if image.ledger is not None:
+        rows["where the walks ended"] = _ledger_line(image.ledger)
     show_results(image, rows, output, contents)
+
+
+def _ledger_line(ledger: Ledger) -> str:
+    """Return the largest entries of ``ledger``, in percent of all that set out."""
+    bodies = sorted(ledger.absorbed.items(), key=lambda entry: -entry[1])
+    kept = [entry for entry in bodies if entry[1] >= 5e-4]
+    named, others = kept[:_NAMED_BODIES], kept[_NAMED_BODIES:]
+    if len(others) == 1:
+        named, others = kept, []
+    entries = [("background", ledger.escaped), *named]
+    if others:
+        entries.append((f"{len(others)} others", sum(share for _, share in others)))
+    rest = {"depth limit": ledger.cut_by_depth, "lost": ledger.lost}
+    entries += [(name, share) for name, share in rest.items() if share > 0.0]
+    return ", ".join(f"{name} {100 * share:.2g} %" for name, share in entries)

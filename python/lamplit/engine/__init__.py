@@ -4,7 +4,21 @@
 from __future__ import annotations
 
 from lamplit.engine.compare import Comparison, compare
+from lamplit.engine.features import Features
 from lamplit.engine.image import Image
+from lamplit.engine.ledger import Ledger
+from lamplit.engine.plan import PILOT_SAMPLES, Plan, plan
 from lamplit.engine.render import RenderInterrupted, render
 
-__all__ = ["Comparison", "Image", "RenderInterrupted", "compare", "render"]
+__all__ = [
+    "PILOT_SAMPLES",
+    "Comparison",
+    "Features",
+    "Image",
+    "Ledger",
+    "Plan",
+    "RenderInterrupted",
+    "compare",
+    "plan",
+    "render",
+]

@@ -29,7 +29,8 @@ def compare(
     """Render ``scene`` with spectra and with three numbers per light and material.
 
     Both go through the same code and draw the same random numbers. All lanes share the direction
-    of n_d in both, since RGB refracts all light alike. ``progress`` counts both pictures.
+    of n_d in both, since RGB refracts all light alike. ``method`` is ``hall``, whatever the scene
+    says, unless it is asked for. ``progress`` counts both pictures.
 
     Raises:
         LamplitError: The scene or an argument cannot be used.
@@ -42,6 +43,7 @@ def compare(
             method=method,
             colour=colour,
             samples=samples,
+            adaptive=False,
             threads=threads,
             progress=None if progress is None else _half_of(progress, half),
         )

@@ -13,9 +13,14 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     import xarray
 
+    from lamplit.engine.features import Features
+    from lamplit.engine.ledger import Ledger
     from lamplit.scene import Scene
 
 Array = NDArray[np.float64]
+
+#: The relative error of a pixel is taken of its luminance and this share of the picture's mean.
+_FLOOR = 0.01
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -30,20 +35,36 @@ class Image:
     spectral_radiance: Array | None = None
     #: The middle of each band, (B,), in nm, rising.
     band_centres_nm: Array = field(default_factory=lambda: np.empty(0))
-    #: Samples per pixel that were taken (in every pixel at least), and that were asked for.
+    #: By light group, X, Y, Z of its light alone, (H, W, 3), in cd/m²; empty unless asked for.
+    layers: Mapping[str, Array] = field(default_factory=dict[str, Array])
+    #: Standard error (1σ) of each value in ``layers``.
+    layers_standard_error: Mapping[str, Array] = field(default_factory=dict[str, Array])
+    #: What each pixel looks at; None unless asked for.
+    features: Features | None = None
+    #: Samples per pixel that were taken (on average), and that were asked for (at most).
     samples: int
     samples_asked: int
+    #: Samples of each pixel that are in the picture, (H, W).
+    samples_per_pixel: NDArray[np.uint32]
+    #: Samples per pixel besides, which only told how many each pixel takes.
+    pilot_samples: int = 0
+    #: The `relative_error` that was asked for, if any.
+    error_asked: float | None = None
+    #: Where the weight of all walks went; None for a method that keeps no ledger.
+    ledger: Ledger | None = None
     seed: int
     #: The scene as it was rendered, overrides included.
     scene: Scene
-    #: The transport: ``hall`` is the founding shading model.
-    method: str = "hall"
+    #: The transport: ``path`` is physical, ``hall`` is the founding shading model.
+    method: str = "path"
     #: ``rgb`` carried three numbers per light and material, ``spectral`` carried spectra.
     colour: Literal["spectral", "rgb"] = "spectral"
     #: Counts and timings of the engine by name (rays, lost rays, rays cut, ...).
     statistics: Mapping[str, Any] = field(default_factory=dict[str, Any])
     elapsed_s: float
-    #: Whether all samples asked for are in.
+    #: What to know of the scene and the method, one line each.
+    notices: tuple[str, ...] = ()
+    #: Whether all was done that was asked for: samples, an error, or a time.
     complete: bool
     #: Whether Ctrl-C or SIGTERM ended the render.
     interrupted: bool = False
@@ -66,53 +87,30 @@ class Image:
         """Luminance L_v, (H, W), in cd/m²."""
         return self.xyz[..., 1]
 
+    @property
+    def relative_error(self) -> float:
+        """Root mean square over the pixels of the luminance's relative standard error.
+
+        It is relative to the pixel's luminance and 1 % of the picture's mean together, since a
+        share of black has no meaning. Infinite where a pixel has fewer than two samples.
+        """
+        good = np.isfinite(self.xyz).all(axis=-1)
+        luminance, error = self.luminance_cd_m2[good], self.xyz_standard_error[..., 1][good]
+        if not error.any():
+            return 0.0
+        tone = luminance + _FLOOR * luminance.mean()
+        shares = np.divide(error, tone, out=np.zeros_like(error), where=error > 0.0)
+        return float(np.sqrt(np.square(shares).mean()))
+
     def to_xarray(self) -> xarray.Dataset:
         """Return the image as a labelled dataset; each array has ``units`` and a ``long_name``.
 
-        Variables: ``xyz`` and ``xyz_standard_error`` over (row, column, component), and, where
-        bands were kept, ``spectral_radiance`` over (row, column, wavelength). What made the
-        picture (seed, samples, scene hash, command) is in the dataset's attributes.
+        Variables: ``xyz`` and ``xyz_standard_error`` over (row, column, component), ``samples``
+        over (row, column), and, where they were asked for, ``spectral_radiance`` over (row, column,
+        wavelength), ``layer_xyz`` and ``layer_xyz_standard_error`` over (group, row, column,
+        component), and ``depth``, ``normal``, ``body``, ``albedo`` and ``interfaces``. What made
+        the picture (seed, samples, scene hash, command) is in the dataset's attributes.
         """
-        import xarray
+        from lamplit.engine.labelled import labelled
 
-        pixels = ("row", "column")
-        variables: dict[str, Any] = {
-            "xyz": (
-                (*pixels, "component"),
-                self.xyz,
-                {"units": "cd/m2", "long_name": "CIE tristimulus values; Y is the luminance"},
-            ),
-            "xyz_standard_error": (
-                (*pixels, "component"),
-                self.xyz_standard_error,
-                {"units": "cd/m2", "long_name": "standard error (1 sigma) of xyz"},
-            ),
-        }
-        coordinates: dict[str, Any] = {
-            "row": ("row", np.arange(self.height), {"long_name": "row from the top"}),
-            "column": ("column", np.arange(self.width), {"long_name": "column from the left"}),
-            "component": ("component", ["X", "Y", "Z"]),
-        }
-        if self.spectral_radiance is not None:
-            variables["spectral_radiance"] = (
-                (*pixels, "wavelength"),
-                self.spectral_radiance,
-                {"units": "W m-2 sr-1 nm-1", "long_name": "spectral radiance"},
-            )
-            coordinates["wavelength"] = (
-                "wavelength",
-                self.band_centres_nm,
-                {"units": "nm", "long_name": "middle of the band"},
-            )
-        attributes = {
-            "scene": self.scene.name,
-            "scene_hash": self.scene.scene_hash,
-            "seed": self.seed,
-            "samples": self.samples,
-            "samples_asked": self.samples_asked,
-            "method": self.method,
-            "colour": self.colour,
-            "version": self.version,
-            "command": self.command,
-        }
-        return xarray.Dataset(variables, coordinates, attributes)
+        return labelled(self)

@@ -3,29 +3,29 @@
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Callable
 from typing import Literal
 
 import numpy as np
-from pydantic import ValidationError
+from numpy.typing import NDArray
 
 from lamplit import _core
 from lamplit.engine.assembly import assemble
 from lamplit.engine.carrier import Array, Carrier, RgbCarrier, SpectralCarrier
+from lamplit.engine.features import features_of
 from lamplit.engine.image import Image
-from lamplit.errors import LamplitError, SceneError, nearest_name
+from lamplit.engine.ledger import Ledger
+from lamplit.engine.plan import Plan, plan
+from lamplit.errors import SceneError
 from lamplit.scene import Scene
-from lamplit.scene.camera import ImageSettings
+from lamplit.scene.shining import path_notices
 
 #: Called with the samples done and to do, over all pixels, a few times a second.
 ProgressCallback = Callable[[int, int], object]
 
-METHODS = ("path", "hall")
-
 #: Into how many bands a lane of the spectral picture is cut at most: over 380–780 nm and with 25
-#: samples or more these are 80 bands of 5 nm.
+#: samples or more in every pixel these are 80 bands of 5 nm.
 _FINEST_BANDS = 5
 
 
@@ -40,59 +40,89 @@ class RenderInterrupted(KeyboardInterrupt):
 def render(
     scene: Scene,
     *,
-    method: str = "hall",
+    method: str | None = None,
     colour: Literal["spectral", "rgb"] = "spectral",
     samples: int | None = None,
+    error: float | None = None,
+    time_s: float | None = None,
+    adaptive: bool | None = None,
     threads: int | None = None,
     spectral_bands: bool = False,
+    layers: bool = False,
+    features: bool = False,
     progress: ProgressCallback | None = None,
 ) -> Image:
     """Render ``scene`` and return tristimulus values in cd/m² with their standard errors.
 
-    ``method`` is ``hall``, the founding method. ``colour`` is ``rgb`` for the RGB half of a
-    comparison. ``samples`` per pixel stand in for the scene's own. ``threads`` of None takes one
-    per core; the result does not depend on it. ``spectral_bands`` keeps each pixel's spectrum.
+    ``method`` is ``path``, physical transport, or ``hall``, the founding method; None takes the
+    scene's. ``colour`` is ``rgb`` for the RGB half of a comparison.
+
+    ``samples`` per pixel stand in for the scene's own. ``error`` is the `Image.relative_error` to
+    sample down to, and ``time_s`` the seconds to trace for; with either, ``samples`` is the most
+    that a pixel takes on average, and None sets no limit of its own. ``adaptive`` allots samples to
+    pixels by their noise and what they cost, after a first round that is thrown away, so that no
+    pixel is biased; None does so where there is an error to reach.
+
+    ``threads`` of None takes one per core; the result does not depend on it, but for how far it
+    comes in ``time_s``. ``spectral_bands`` keeps each pixel's spectrum, ``layers`` a picture for
+    each light group, ``features`` what each pixel looks at.
 
     Raises:
-        LamplitError: The scene or an argument cannot be used.
+        LamplitError: The scene or an argument cannot be used, or arguments contradict each other.
         RenderInterrupted: Ctrl-C; its ``image`` has the samples that were done.
     """
-    if method not in METHODS:
-        raise LamplitError(
-            f"there is no method {method!r}{nearest_name(method, METHODS)}; "
-            f"choose one of {', '.join(METHODS)}"
-        )
-    if samples is not None:
-        scene = _with_samples(scene, samples)
+    settled = plan(
+        scene,
+        method=method,
+        samples=samples,
+        error=error,
+        time_s=time_s,
+        adaptive=adaptive,
+        layers=layers,
+    )
+    scene = settled.scene
+    notices = path_notices(scene) if settled.method == "path" else ()
     spectral = SpectralCarrier(scene.image.wavelength_range_nm, scene.image.observer)
     carrier: Carrier = spectral
     if colour == "rgb":
         carrier = RgbCarrier(spectral, scene.resolve_source(scene.display.white))
     keeps_bands = spectral_bands and colour == "spectral"
-    bands = _bands_per_lane(scene.image.samples, spectral.phases) if keeps_bands else 0
+    bands = _bands_per_lane(settled, spectral.phases) if keeps_bands else 0
     start = time.perf_counter()
     world = assemble(scene, carrier)
     scene_hash = scene.scene_hash  # of the files as they were read, whatever becomes of them
+    seen = features_of(scene, world, threads=threads) if features else None
     built = time.perf_counter()
-    outcome = _trace(scene, world, method=method, bands=bands, threads=threads, progress=progress)
+    outcome = _trace(settled, world, bands=bands, layers=layers, threads=threads, progress=progress)
     timings = {"build_s": built - start, "trace_s": time.perf_counter() - built}
+    counts = outcome.samples()
+    by_group, by_group_error = _by_group(outcome)
+    has_bands = bands > 0 and outcome.spectral_radiance().size > 0
     image = Image(
         xyz=outcome.xyz(),
         xyz_standard_error=outcome.xyz_standard_error(),
-        spectral_radiance=outcome.spectral_radiance() if bands else None,
-        band_centres_nm=_band_centres(scene, bands),
-        samples=int(outcome.samples().min()) if outcome.interrupted else scene.image.samples,
-        samples_asked=scene.image.samples,
+        spectral_radiance=outcome.spectral_radiance() if has_bands else None,
+        band_centres_nm=_band_centres(scene, bands if has_bands else 0),
+        layers=by_group,
+        layers_standard_error=by_group_error,
+        features=seen,
+        samples=_samples(settled, outcome, counts),
+        samples_asked=settled.samples,
+        samples_per_pixel=counts,
+        pilot_samples=outcome.pilot_samples,
+        error_asked=settled.error,
+        ledger=Ledger.of(outcome),
         seed=scene.image.seed,
         scene=scene,
-        method=method,
+        method=settled.method,
         colour=colour,
         statistics=outcome.statistics() | timings | {"geometry_bytes": world.memory_bytes},
         elapsed_s=time.perf_counter() - start,
+        notices=notices,
         complete=not outcome.interrupted,
         interrupted=outcome.interrupted,
         version=_core.__version__,
-        command=f"lamplit.render(scene, method={method!r}, colour={colour!r}) of {scene_hash}",
+        command=_call(settled, colour, scene_hash),
     )
     if image.interrupted:
         raise RenderInterrupted(image)
@@ -100,38 +130,43 @@ def render(
 
 
 def _trace(
-    scene: Scene,
+    settled: Plan,
     world: _core.Scene,
     *,
-    method: str,
     bands: int,
+    layers: bool,
     threads: int | None,
     progress: ProgressCallback | None,
 ) -> _core.Render:
-    image = scene.image
+    image = settled.scene.image
     try:
         return world.render(
             image.width,
             image.height,
             image.samples,
-            _method(scene, method),
-            sampling=image.sampling if method == "hall" else "sobol",
+            _method(settled.scene),
+            adaptive=settled.adaptive,
+            target_error=settled.error,
+            time_budget_s=settled.time_s,
+            sampling=image.sampling if settled.method == "hall" else "sobol",
             filter=image.filter,
             seed=image.seed,
             bands_per_lane=bands,
+            layers=layers,
             threads=threads or 0,
             progress=progress,
         )
     except ValueError as fault:
-        raise SceneError(str(fault), file=scene.path) from fault
+        raise SceneError(str(fault), file=settled.scene.path) from fault
 
 
-def _method(scene: Scene, method: str) -> _core.HallMethod | _core.PathMethod:
-    if method == "path":
+def _method(scene: Scene) -> _core.HallMethod | _core.PathMethod:
+    if scene.image.method == "path":
+        path = scene.path_settings
         return _core.PathMethod(
-            max_depth=64,
-            split_depth=int(os.environ.get("SPLIT", "4")),
-            roulette_below=float(os.environ.get("ROUL", "0.05")),
+            max_depth=path.max_depth,
+            split_depth=path.split_depth,
+            roulette_below=path.roulette_below,
         )
     hall = scene.hall
     return _core.HallMethod(
@@ -142,19 +177,35 @@ def _method(scene: Scene, method: str) -> _core.HallMethod | _core.PathMethod:
     )
 
 
-def _with_samples(scene: Scene, samples: int) -> Scene:
-    """Return ``scene`` with another number of samples, checked as the loader checks it."""
-    written = scene.image.model_dump() | {"samples": samples}
-    try:
-        return scene.changed(image=ImageSettings.model_validate(written))
-    except ValidationError as fault:
-        reason = fault.errors()[0]["msg"]
-        raise LamplitError(f"{samples} samples per pixel: {reason}") from fault
+def _by_group(outcome: _core.Render) -> tuple[dict[str, Array], dict[str, Array]]:
+    """Return the layers by the names of their light groups, and their standard errors."""
+    names = outcome.groups
+    values, errors = outcome.layers(), outcome.layers_standard_error()
+    return dict(zip(names, values, strict=True)), dict(zip(names, errors, strict=True))
 
 
-def _bands_per_lane(samples: int, phases: int) -> int:
-    """Return the finest cut of a lane in which every band gets samples."""
-    if samples < phases:
+def _samples(settled: Plan, outcome: _core.Render, counts: NDArray[np.uint32]) -> int:
+    """Return the samples per pixel: those asked for, or the mean of those that were taken."""
+    is_open = settled.adaptive or settled.time_s is not None or outcome.interrupted
+    return round(float(counts.mean())) if is_open else settled.samples
+
+
+def _call(settled: Plan, colour: str, scene_hash: str) -> str:
+    asked = {
+        "method": settled.method,
+        "colour": colour,
+        "error": settled.error,
+        "time_s": settled.time_s,
+        "adaptive": settled.adaptive or None,
+    }
+    words = "".join(f", {name}={value!r}" for name, value in asked.items() if value is not None)
+    return f"lamplit.render(scene{words}) of {scene_hash}"
+
+
+def _bands_per_lane(settled: Plan, phases: int) -> int:
+    """Return the finest cut of a lane in which every band of every pixel gets samples."""
+    is_open = settled.adaptive or settled.time_s is not None
+    if is_open or settled.samples < phases:
         return 1
     return max(cut for cut in range(1, _FINEST_BANDS + 1) if phases % cut == 0)
 

@@ -3,17 +3,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from lamplit.colour.display import Display
     from lamplit.colour.picture import Picture
     from lamplit.engine.image import Image
     from lamplit.scene import Scene
+    from lamplit.scene.camera import DisplaySpace
 
 #: With ``white_luminance_cd_m2 = "auto"`` the display can show this share of the pixels' colours
 #: as bright as they are.
@@ -38,53 +41,82 @@ class Developed:
         return _LABELS.get(self.display.name, self.display.name)
 
 
+@dataclass(frozen=True, eq=False)
+class View:
+    """How tristimulus values become a picture: what it is shown on, and the eye's white."""
+
+    display: Display
+    #: Chromaticity (2,) of the scene's white.
+    white_xy: NDArray[np.float64]
+    #: What becomes the display's white, in cd/m²; ``auto`` takes that of `automatic_white`.
+    white_luminance_cd_m2: float | Literal["auto"]
+    adaptation: Literal["cat16", "bradford", "none"]
+    gamut: Literal["map", "clip"]
+
+    @staticmethod
+    def of(scene: Scene) -> View:
+        """Return what the scene's ``[display]`` says.
+
+        Raises:
+            LamplitError: The display or the white of the scene cannot be used.
+        """
+        settings = scene.display
+        return View(
+            scene_display(scene),
+            scene_white_xy(scene),
+            settings.white_luminance_cd_m2,
+            settings.adaptation,
+            settings.gamut,
+        )
+
+
 def develop(image: Image, *, white_luminance_cd_m2: float | None = None) -> Developed:
     """Return ``image`` as its scene's ``[display]`` shows it.
 
     ``white_luminance_cd_m2`` stands in for the scene's own, so that two pictures can share one
-    white. ``auto`` takes that of `automatic_white`.
+    white.
 
     Raises:
         LamplitError: The display or the white of the scene cannot be used.
     """
+    view = View.of(image.scene)
+    if white_luminance_cd_m2 is not None:
+        view = replace(view, white_luminance_cd_m2=white_luminance_cd_m2)
+    return develop_xyz(image.xyz, view)
+
+
+def develop_xyz(xyz: NDArray[np.float64], view: View) -> Developed:
+    """Return tristimulus values (H, W, 3), in cd/m², as they are seen in ``view``."""
     from lamplit.colour.picture import to_picture
     from lamplit.colour.tristimulus import xyz_of_xy
 
-    settings = image.scene.display
-    white = white_luminance_cd_m2
-    if white is None:
-        asked = settings.white_luminance_cd_m2
-        white = automatic_white(image) if asked == "auto" else float(asked)
-    display = scene_display(image.scene)
-    white_xy = scene_white_xy(image.scene)
-    shown = np.where(np.isfinite(image.xyz), image.xyz, 0.0)  # `summary` counts what is not
+    asked = view.white_luminance_cd_m2
+    white = automatic_white(xyz, view) if asked == "auto" else asked
+    shown = np.where(np.isfinite(xyz), xyz, 0.0)  # `summary` counts what is not
     picture = to_picture(
         shown,
-        display=display,
+        display=view.display,
         white_luminance_cd_m2=white,
-        white_xy=white_xy,
-        adaptation=settings.adaptation,
-        gamut=settings.gamut,
+        white_xy=view.white_xy,
+        adaptation=view.adaptation,
+        gamut=view.gamut,
     )
-    return Developed(picture, display, white, xyz_of_xy(white_xy, white))
+    return Developed(picture, view.display, white, xyz_of_xy(view.white_xy, white))
 
 
-def automatic_white(image: Image) -> float:
-    """Return the luminance in cd/m² of display white that suits ``image``; 1 for a black picture.
+def automatic_white(xyz: NDArray[np.float64], view: View) -> float:
+    """Return the luminance in cd/m² of display white that suits a picture; 1 for a black one.
 
     It is the 99 % percentile, over the pixels, of the largest of linear R, G and B per cd/m² of
     white: no channel of a saturated red is cut off, which would turn it pink.
-
-    Raises:
-        LamplitError: The display or the white of the scene cannot be used.
     """
     from lamplit.colour.picture import linear_rgb
 
     linear = linear_rgb(
-        image.xyz[np.isfinite(image.xyz).all(axis=-1)],
-        display=scene_display(image.scene),
-        white_xy=scene_white_xy(image.scene),
-        adaptation=image.scene.display.adaptation,
+        xyz[np.isfinite(xyz).all(axis=-1)],
+        display=view.display,
+        white_xy=view.white_xy,
+        adaptation=view.adaptation,
     )
     largest = linear.max(axis=-1)
     white = float(np.percentile(largest, _AUTO_SHOWN_PERCENT)) if largest.size else 0.0
@@ -97,21 +129,33 @@ def check_display(scene: Scene) -> None:
     Raises:
         LamplitError: They cannot.
     """
-    scene_display(scene)
-    scene_white_xy(scene)
+    View.of(scene)
 
 
 def scene_display(scene: Scene) -> Display:
     """Return the display of the scene's ``display.space``: a name, primaries, or an ICC file."""
+    return display_of(scene.display.space, root=scene.root)
+
+
+def display_of(space: DisplaySpace, *, root: Path | None) -> Display:
+    """Return the display that ``space`` describes; the file of an ICC profile lies below ``root``.
+
+    Raises:
+        LamplitError: It cannot be used, or is a profile and there is no root.
+    """
     from lamplit.colour.display import Display
+    from lamplit.errors import LamplitError
     from lamplit.files import resolve_inside
     from lamplit.scene.camera import IccDisplay
 
-    space = scene.display.space
     if isinstance(space, str):
         return Display.named(space)
     if isinstance(space, IccDisplay):
-        return Display.from_icc(resolve_inside(scene.root, space.icc, where="display.space.icc"))
+        if root is None:
+            raise LamplitError(
+                "its display was the ICC profile of a file that is not at hand; name a --display"
+            )
+        return Display.from_icc(resolve_inside(root, space.icc, where="display.space.icc"))
     return Display.from_primaries(space.primaries_xy, space.white_xy, space.gamma)
 
 

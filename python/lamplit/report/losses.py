@@ -44,7 +44,7 @@ class Losses:
     def of(cls, image: Image) -> Losses:
         """Return the losses of ``image`` from the counts of its engine."""
         counts = image.statistics
-        done = image.samples_asked if image.complete else image.samples
+        done = image.samples
         first: tuple[int, int] | None = counts.get("first_dropped_sample")
         place = None
         if first is not None:
@@ -53,7 +53,7 @@ class Losses:
         return cls(
             segments=counts.get("eye_rays", 0) + counts.get("shadow_rays", 0),
             lost_rays=counts.get("lost_rays", {}),
-            samples=done * image.width * image.height,
+            samples=(done + image.pilot_samples) * image.width * image.height,
             dropped_samples=counts.get("dropped_samples", 0),
             first_dropped=place,
         )

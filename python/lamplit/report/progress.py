@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Iterator
 from types import TracebackType
 from typing import TYPE_CHECKING, TextIO
 
@@ -22,12 +23,26 @@ class Progress:
     """A callback ``(done, total)`` for `lamplit.engine.render` that tells how far it is.
 
     On a terminal it draws a bar with the time left, at most ten times a second. Elsewhere it
-    writes a line per tenth of the work, and one at least every ten seconds.
+    writes a line per tenth of the work, and one at least every ten seconds. With ``pixels`` it
+    also tells samples per pixel and paths per second. ``time_s`` is a budget of seconds, of which
+    the work is then told as a share; how many of the samples come in it, nobody knows. Neither is
+    the total known before ``first_round`` samples are done.
     """
 
-    def __init__(self, title: str, stream: TextIO | None = None) -> None:
+    def __init__(
+        self,
+        title: str,
+        stream: TextIO | None = None,
+        *,
+        pixels: int | None = None,
+        time_s: float | None = None,
+        first_round: int = 0,
+    ) -> None:
         self.title = title
         self.stream = sys.stderr if stream is None else stream
+        self._pixels = pixels
+        self._time_s = time_s
+        self._first_round = first_round
         self._bar: Bar | None = None
         self._task: TaskID | None = None
         self._started = time.monotonic()
@@ -37,7 +52,7 @@ class Progress:
     def __enter__(self) -> Self:
         if self.stream.isatty():
             self._bar = _terminal_bar(self.stream)
-            self._task = self._bar.add_task(self.title, total=None)
+            self._task = self._bar.add_task(self.title, total=None, detail="")
             self._bar.start()
         return self
 
@@ -54,23 +69,46 @@ class Progress:
     def __call__(self, done: int, total: int) -> None:
         """Tell that ``done`` of ``total`` pieces of work are over."""
         now = time.monotonic()
+        elapsed_s = now - self._started
+        share = self._share(done, total, elapsed_s)
         if self._bar is not None and self._task is not None:
-            self._bar.update(self._task, completed=done, total=total)
+            detail = ", ".join(self._details(done, total, elapsed_s))
+            known = None if share is None else 1.0
+            self._bar.update(self._task, completed=share or 0.0, total=known, detail=detail)
             if now - self._last_time >= _FRAME_S or done >= total:
                 self._last_time = now
                 self._bar.refresh()
             return
-        step = done * _QUIET_STEPS // max(total, 1)
+        step = int((share or 0.0) * _QUIET_STEPS)
         if step > self._last_step or now - self._last_time >= _QUIET_S:
             self._last_time, self._last_step = now, step
-            print(self._line(done, total, now - self._started), file=self.stream, flush=True)
+            print(self._line(done, total, elapsed_s), file=self.stream, flush=True)
+
+    def _share(self, done: int, total: int, elapsed_s: float) -> float | None:
+        """Return how much of the work is over, or None while that is not known."""
+        by_time = 0.0 if self._time_s is None else min(elapsed_s / self._time_s, 1.0)
+        if done < self._first_round:
+            return by_time or None
+        return max(done / max(total, 1), by_time)
+
+    def _details(self, done: int, total: int, elapsed_s: float) -> Iterator[str]:
+        if self._pixels is None:
+            return
+        samples = f"{done / self._pixels:.3g}"
+        if self._time_s is None and done >= self._first_round:
+            samples += f" of {total / self._pixels:.3g}"
+        yield f"{samples} samples per pixel"
+        if elapsed_s > 0.0:
+            yield f"{done / elapsed_s / 1e6:.3g} million paths/s"
 
     def _line(self, done: int, total: int, elapsed_s: float) -> str:
-        percent = 100 * done // max(total, 1)
-        line = f"{self.title}: {percent} % after {_duration(elapsed_s)}"
-        if 0 < done < total:
-            line += f", about {_duration(elapsed_s * (total - done) / done)} left"
-        return line
+        share = self._share(done, total, elapsed_s)
+        percent = "first round" if share is None else f"{int(100 * share)} %"
+        words = [f"{self.title}: {percent} after {_duration(elapsed_s)}"]
+        words += self._details(done, total, elapsed_s)
+        if share is not None and 0.0 < share < 1.0:
+            words.append(f"about {_duration(elapsed_s * (1.0 - share) / share)} left")
+        return ", ".join(words)
 
 
 def _terminal_bar(stream: TextIO) -> Bar:
@@ -83,6 +121,7 @@ def _terminal_bar(stream: TextIO) -> Bar:
         BarColumn(bar_width=None, complete_style="red", finished_style="bright_red"),
         TaskProgressColumn(),
         TimeRemainingColumn(compact=True, elapsed_when_finished=True),
+        TextColumn("{task.fields[detail]}"),
         console=Console(file=stream),
         auto_refresh=False,
     )

@@ -13,7 +13,8 @@ def provenance(image: Image) -> dict[str, Any]:
     """Return everything that decides the numbers of ``image``, as plain JSON values.
 
     The same scene hash, seed, samples, method, colour and version give the same numbers on any
-    machine; ``command`` starts such a run.
+    machine, unless a time budget chose how many samples an adaptive render takes; ``command``
+    starts such a run.
     """
     scene = image.scene
     return {
@@ -25,6 +26,8 @@ def provenance(image: Image) -> dict[str, Any]:
         "seed": image.seed,
         "samples": image.samples,
         "samples_asked": image.samples_asked,
+        "pilot_samples": image.pilot_samples,
+        "error_asked": image.error_asked,
         "complete": image.complete,
         "observer": scene.image.observer,
         "white": described(scene.display.white),

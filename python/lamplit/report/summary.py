@@ -16,49 +16,84 @@ if TYPE_CHECKING:
     from lamplit.engine.image import Image
     from lamplit.report.develop import Developed
 
+Array = NDArray[np.float64]
+
 _PERCENTILES = (0, 1, 5, 25, 50, 75, 95, 99, 100)
 
 
 def summary(image: Image, developed: Developed) -> dict[str, Any]:
     """Return what ``image`` shows and how it came about, as plain JSON values.
 
-    Luminances are in cd/m². The standard error of the mean takes pixels as independent; it is None
-    where a pixel has a single sample, which has no error that could be known.
+    Luminances are in cd/m². The standard error of the mean takes pixels as independent; like the
+    relative error, it is None where a pixel has a single sample, which has no error that could be
+    known.
     """
-    height, width = image.height, image.width
-    good = np.isfinite(image.xyz).all(axis=-1)
-    mean_xyz = image.xyz[good].mean(axis=0) if good.any() else np.zeros(3)
-    error = image.xyz_standard_error[..., 1][good]
-    mean_error = float(np.sqrt(np.square(error).sum()) / max(error.size, 1))
+    shown = picture_numbers(image.xyz, image.xyz_standard_error, developed)
+    settings = image.scene.display
+    shown["display"] |= {
+        "space": described(settings.space),
+        "adaptation": settings.adaptation,
+        "gamut": settings.gamut,
+    }
     return {
         "lamplit_summary": 1,
         **provenance(image),
-        "width": width,
-        "height": height,
-        "luminance_cd_m2": {
-            "mean": float(mean_xyz[1]),
-            "mean_standard_error": mean_error if np.isfinite(mean_error) else None,
-            "percentiles": percentiles(image.luminance_cd_m2[good], _PERCENTILES),
+        **shown,
+        "relative_error_rms": _known(image.relative_error),
+        "samples_per_pixel": {
+            "fewest": int(image.samples_per_pixel.min()),
+            "mean": float(image.samples_per_pixel.mean()),
+            "most": int(image.samples_per_pixel.max()),
         },
-        "chromaticity_xy_of_mean": chromaticity(mean_xyz),
-        "display": {
-            "space": described(image.scene.display.space),
-            "label": developed.display_label,
-            "white_luminance_cd_m2": float(developed.white_luminance_cd_m2),
-            "adaptation": image.scene.display.adaptation,
-            "gamut": image.scene.display.gamut,
-            "out_of_gamut_share": float(developed.picture.gamut_share),
-            "over_white_share": float(developed.picture.over_white_share),
-        },
-        "not_finite_pixels": int(good.size - good.sum()),
-        "negative_luminance_pixels": int((image.luminance_cd_m2[good] < 0).sum()),
+        "light_groups": list(image.layers),
+        "ledger": None if image.ledger is None else image.ledger.as_json(),
         "losses": Losses.of(image).as_json(),
+        "notices": list(image.notices),
         "statistics": dict(image.statistics),
+        "speed": speed(image),
         "elapsed_s": float(image.elapsed_s),
         "python": platform.python_version(),
         "numpy": np.__version__,
         "machine": platform.machine(),
     }
+
+
+def picture_numbers(xyz: Array, standard_error: Array, developed: Developed) -> dict[str, Any]:
+    """Return what XYZ (H, W, 3), in cd/m², show on their display, as plain JSON values."""
+    good = np.isfinite(xyz).all(axis=-1)
+    luminance = xyz[..., 1][good]
+    mean_xyz = xyz[good].mean(axis=0) if good.any() else np.zeros(3)
+    error = standard_error[..., 1][good]
+    return {
+        "width": xyz.shape[1],
+        "height": xyz.shape[0],
+        "luminance_cd_m2": {
+            "mean": float(mean_xyz[1]),
+            "mean_standard_error": _known(np.sqrt(np.square(error).sum()) / max(error.size, 1)),
+            "percentiles": percentiles(luminance, _PERCENTILES),
+        },
+        "chromaticity_xy_of_mean": chromaticity(mean_xyz),
+        "display": {
+            "label": developed.display_label,
+            "white_luminance_cd_m2": float(developed.white_luminance_cd_m2),
+            "out_of_gamut_share": float(developed.picture.gamut_share),
+            "over_white_share": float(developed.picture.over_white_share),
+        },
+        "not_finite_pixels": int(good.size - good.sum()),
+        "negative_luminance_pixels": int((luminance < 0).sum()),
+    }
+
+
+def speed(image: Image) -> dict[str, float | None]:
+    """Return rays (segments of walks and towards lights) and walks from the eye per second."""
+    seconds = float(image.statistics.get("trace_s", 0.0))
+    walks = int(image.samples_per_pixel.sum()) + image.pilot_samples * image.width * image.height
+    counts = {"rays_per_s": Losses.of(image).segments, "paths_per_s": walks}
+    return {name: count / seconds if seconds > 0.0 else None for name, count in counts.items()}
+
+
+def _known(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
 
 
 def percentiles(values: NDArray[np.float64], shares: tuple[float, ...]) -> dict[str, float]:

@@ -23,6 +23,9 @@ pub(super) struct Branch {
     pub splits: u32,
     /// How it got its direction.
     pub came_by: CameBy,
+    /// How much more light may come against `ray` than its throughput makes one expect: it was aimed
+    /// at what is bright. Roulette goes by both.
+    pub promise: f64,
 }
 
 /// How a branch got its direction: which other technique would have found the same light.
@@ -45,8 +48,8 @@ pub(super) type Ways = [Option<Branch>; 2];
 impl Branch {
     /// The branch that every other comes from.
     pub fn from_eye((ray, interior): (Ray, Interior), sampler: PixelSampler) -> Self {
-        let throughput = SampledSpectrum::ONE;
-        Self { ray, throughput, interior, sampler, depth: 0, splits: 0, came_by: CameBy::OneWay }
+        let (throughput, came_by) = (SampledSpectrum::ONE, CameBy::OneWay);
+        Self { ray, throughput, interior, sampler, depth: 0, splits: 0, came_by, promise: 1.0 }
     }
 
     /// This branch after a mirror or a smooth interface.

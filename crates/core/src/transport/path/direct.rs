@@ -67,8 +67,10 @@ impl PathWalk<'_> {
             vertex.sample(&lanes, [u, v, w])
         };
         let mut wo = drawn?;
-        let pdf = self.density(vertex, wo, &lanes);
+        let own = vertex.pdf(wo, &lanes);
+        let pdf = self.mixed(vertex, wo, own);
         branch.came_by = CameBy::Scattering { from: vertex.position, pdf };
+        branch.promise = (pdf / own).max(1.0);
         branch.throughput *= vertex.answer(wo) * (1.0 / pdf);
         if !vertex.agrees(wo) {
             wo = vertex.put_right(wo);
@@ -80,11 +82,10 @@ impl PathWalk<'_> {
         (pdf > 0.0).then_some(branch)
     }
 
-    /// The density of the directions that `scatter` draws, per steradian.
-    fn density(&self, vertex: &Vertex<'_>, wo: DVec3, lanes: &SampledSpectrum) -> f64 {
+    /// The density of the directions that `scatter` draws, per steradian; `own` is the vertex's own.
+    fn mixed(&self, vertex: &Vertex<'_>, wo: DVec3, own: f64) -> f64 {
         let background = &self.scene.background;
         let share = background.aim_share(vertex.position);
-        let own = vertex.pdf(wo, lanes);
         if share > 0.0 {
             let ray = Ray::endless(vertex.position, wo);
             (1.0 - share) * own + share * background.aim_pdf(&ray)
@@ -114,7 +115,7 @@ impl PathWalk<'_> {
             return;
         };
         let emitted = if emitter.per_n2 { emitted / (index * index) } else { emitted };
-        let other = self.density(vertex, seen.direction, lanes);
+        let other = self.mixed(vertex, seen.direction, vertex.pdf(seen.direction, lanes));
         let arriving = branch.throughput * answer * transmitted * emitted;
         let arriving = arriving * (1.0 / (seen.pdf + other));
         self.gathered.add(self.scene, self.wavelengths, emitter.group, arriving);

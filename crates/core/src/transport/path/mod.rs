@@ -188,14 +188,14 @@ impl<'a> PathWalk<'a> {
 
     /// Russian roulette: end a branch of little weight, or make it stand for those that ended.
     fn survives(&mut self, branch: &mut Branch, weight: f64) -> bool {
-        let least = self.settings.roulette_below;
-        if weight >= least {
+        let chance = weight * branch.promise / self.settings.roulette_below;
+        if chance >= 1.0 {
             return true;
         }
         let [u, ..] = branch.sampler.next_4d();
-        let lives = u * least < weight;
-        self.tally.ledger.chance(weight, if lives { least } else { 0.0 });
-        branch.throughput *= least / weight;
+        let lives = u < chance;
+        self.tally.ledger.chance(weight, if lives { weight / chance } else { 0.0 });
+        branch.throughput *= 1.0 / chance;
         lives
     }
 
