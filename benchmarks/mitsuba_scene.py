@@ -24,8 +24,10 @@ from lamplit.colour.tristimulus import K_M
 from lamplit.engine.carrier import SpectralCarrier
 from lamplit.materials import Material
 from lamplit.scene import ResolvedObject, Scene
+from lamplit.scene.emission import ResolvedEmission
 from lamplit.scene.lighting import ConstantBackground, Radiator, SoftBox, StudioBackground
 from lamplit.scene.objects import Box, Disc, Plane, Sphere
+from lamplit.spectrum import SpectralDistribution
 
 Array = NDArray[np.float64]
 Node = dict[str, Any]
@@ -37,8 +39,8 @@ _MITSUBA_RANGE_NM = (360.0, 830.0)
 _MITSUBA_Y_INTEGRAL = 106.7502593994140625
 #: Half the side of the square that stands for a plane without end, in mm.
 _ENDLESS_MM = 1e5
-#: Solid glass spreads nothing: the medium only absorbs.
 _SMOOTH = 0.0
+_LAMBERT = 1.0
 
 
 class NotInMitsubaError(ValueError):
@@ -118,9 +120,8 @@ class _Export:
         if medium is not None:
             node["interior"] = medium
             self.has_media = True
-        emission = getattr(thing.shape, "emission", None)
-        if emission is not None:
-            raise NotInMitsubaError(f"{thing.name!r}: emission is not exported")
+        if thing.emission is not None:
+            node["emitter"] = {"type": "area", "radiance": self._emitted(thing.emission)}
         self.nodes[f"object-{at}"] = node
 
     def add_background(self) -> None:
@@ -131,6 +132,8 @@ class _Export:
             raise NotInMitsubaError(f"a {base.kind} background has no equal in Mitsuba")
         if base.luminance_cd_m2 > 0.0:
             self.nodes["surround"] = {"type": "constant", "radiance": self._light(base)}
+        if background.suns:
+            raise NotInMitsubaError("suns are not exported")
         if isinstance(background, StudioBackground):
             for at, soft_box in enumerate(background.soft_boxes):
                 self.nodes[f"soft-box-{at}"] = self._soft_box(soft_box)
@@ -154,11 +157,22 @@ class _Export:
             "emitter": {"type": "area", "radiance": self._light(soft_box)},
         }
 
+    def _emitted(self, emission: ResolvedEmission) -> Node:
+        if emission.photometry is not None or emission.cosine_exponent != _LAMBERT:
+            raise NotInMitsubaError("Mitsuba's area lights follow Lambert's law")
+        if emission.quantity == "spectral_radiance":
+            return _table(_NM, emission.spectrum(_NM))
+        if emission.quantity != "luminance_cd_m2":
+            raise NotInMitsubaError("give an emission by its luminance_cd_m2")
+        return self._scaled(emission.spectrum, emission.amount)
+
     def _light(self, radiator: Radiator) -> Node:
+        return self._scaled(self._scene.resolve_source(radiator.source), radiator.luminance_cd_m2)
+
+    def _scaled(self, spectrum: SpectralDistribution, luminance_cd_m2: float) -> Node:
         """Return spectral radiance in W·m⁻²·sr⁻¹·nm⁻¹, nothing outside of the picture's range."""
-        source = self._scene.resolve_source(radiator.source)
-        shape = self._carrier.tristimulus(source(self._carrier.wavelengths_nm))
-        return _table(_NM, source(_NM) * (radiator.luminance_cd_m2 / shape[1]))
+        shape = self._carrier.tristimulus(spectrum(self._carrier.wavelengths_nm))
+        return _table(_NM, spectrum(_NM) * (luminance_cd_m2 / shape[1]))
 
     def _shape(self, at: int, thing: ResolvedObject) -> Node:
         shape = thing.shape
@@ -185,16 +199,13 @@ class _Export:
 
 
 def _surface(material: Material) -> Node:
-    alpha = float(getattr(material, "roughness", 0.0))
-    if getattr(material, "texture", None) is not None:
-        raise NotInMitsubaError("a moulded texture has no equal in Mitsuba")
-    rough = {} if alpha == _SMOOTH else {"distribution": "ggx", "alpha": alpha}
+    rough = _roughness(material)
     match material.kind:
         case "dielectric":
             ratio = {"int_ior": _constant_index(material.index(_NM)), "ext_ior": 1.0}
             return {"type": _name("dielectric", rough), **ratio, **rough}
         case "conductor":
-            if getattr(material, "lacquer", None) is not None:
+            if material.lacquer is not None:
                 raise NotInMitsubaError("a lacquered metal has no equal in Mitsuba")
             metal = {"eta": _held(material.index(_NM)), "k": _held(material.extinction(_NM))}
             share = {"specular_reflectance": _even(material.factor)}
@@ -218,15 +229,26 @@ def _surface(material: Material) -> Node:
             raise NotInMitsubaError(f"matter of kind {material.kind!r} is not exported")
 
 
+def _roughness(material: Material) -> Node:
+    """Return what makes a surface of Mitsuba rough; nothing for a smooth one."""
+    match material.kind:
+        case "dielectric" | "conductor" | "mirror" | "glossy":
+            if material.texture is not None:
+                raise NotInMitsubaError("a moulded texture has no equal in Mitsuba")
+            smooth = material.roughness == _SMOOTH
+            return {} if smooth else {"distribution": "ggx", "alpha": material.roughness}
+        case _:
+            return {}
+
+
 def _medium(material: Material) -> Node | None:
     if material.kind != "dielectric":
         return None
     absorption = material.absorption_per_mm(_NM)
     scattering, anisotropy = np.zeros_like(absorption), 0.0
-    described = getattr(material, "scattering", None)
-    if described is not None:
-        scattering = described.coefficient_per_mm.distribution()(_NM)
-        anisotropy = described.anisotropy
+    if material.scattering is not None:
+        scattering = material.scattering.per_mm(_NM)
+        anisotropy = material.scattering.anisotropy
     extinction = absorption + scattering
     if not extinction.any():
         return None

@@ -5,6 +5,7 @@ Leave the machine alone meanwhile. Each part writes a JSON file, a table and pic
 ``benchmarks/results/``, with the machine's name:
 
     unlit    time to the same error on unlit lamps, against Mitsuba 3 (nine minutes): ``unlit.*``
+    walks    what splitting, roulette and allotting bring, in rays (four minutes): ``walks.*``
     path     what the `path` method costs by wavelengths, threads, memory (four minutes): ``path.*``
     kernel   rays against Embree, the Hall method, the start of the program: ``bench.*``
 """
@@ -27,6 +28,7 @@ import numpy as np
 import numpy.typing as npt
 import path_method
 import unlit
+import walks
 from machine import machine, machine_line
 
 import lamplit as ll
@@ -35,7 +37,7 @@ from lamplit.lamps import write_lamp
 HERE = Path(__file__).resolve().parent
 RESULTS = HERE / "results"
 ROUNDS = 5
-PARTS = ("unlit", "path", "kernel")
+PARTS = ("unlit", "walks", "path", "kernel")
 
 
 def main() -> None:
@@ -47,6 +49,8 @@ def main() -> None:
     RESULTS.mkdir(exist_ok=True)
     if "unlit" in options.parts:
         unlit.measure(RESULTS)
+    if "walks" in options.parts:
+        walks.measure(RESULTS)
     if "path" in options.parts:
         path_method.measure(RESULTS)
     if "kernel" in options.parts:
@@ -107,7 +111,9 @@ def measure_hall() -> dict[str, Any]:
         small = scene.changed(image=scene.image.model_copy(update={"width": 160, "height": 100}))
 
         def trace_s(colour: Literal["spectral", "rgb"], threads: int) -> tuple[float, int]:
-            done = ll.render(small, colour=colour, samples=4, threads=threads).statistics
+            done = ll.render(
+                small, method="hall", colour=colour, samples=4, threads=threads
+            ).statistics
             return done["trace_s"], done["eye_rays"] + done["shadow_rays"]
 
         spectral = alternate(lambda: trace_s("spectral", 1), lambda: trace_s("rgb", 1))

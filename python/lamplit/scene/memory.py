@@ -4,19 +4,24 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
+from lamplit.errors import LamplitError
 from lamplit.scene.models import Scene
 
-#: The tracer's triangles, vertices and boxes of its tree: the bar that the kernel keeps.
-_TRACER_BYTES_PER_TRIANGLE = 120
-#: A mesh as it is read: float64 vertices, half as many as triangles, and 32-bit indices.
+#: What reading the largest mesh takes for a while: its topology, and its normals' repair.
+_READING_BYTES_PER_TRIANGLE = 520
+#: The tracer's triangles, vertices and boxes of its tree, and the building of it.
+_TRACER_BYTES_PER_TRIANGLE = 100
+#: A mesh as it is kept: float64 vertices, half as many as triangles, and 32-bit indices.
 _MESH_BYTES_PER_TRIANGLE = 3 * 4
 _MESH_BYTES_PER_VERTEX = 3 * 8
-#: X, Y, Z and the sums of their squares in float64, once in the film and once handed back.
-_FILM_BYTES_PER_PIXEL = 2 * 6 * 8
-_BAND_BYTES_PER_PIXEL = 8
+#: Sums and squares of X, Y and Z, counts, and means and errors as they are handed back.
+_FILM_BYTES_PER_PIXEL = 56 + 8 + 2 * 24
+_BAND_BYTES_PER_PIXEL = 16
+_LAYER_BYTES_PER_PIXEL = 56 + 2 * 24
 #: The interpreter with its libraries, and spectral tables.
-_BASE_BYTES = 160 * 2**20
+_BASE_BYTES = 80 * 2**20
 
 
 @dataclass(frozen=True)
@@ -25,18 +30,21 @@ class MemoryEstimate:
 
     triangles: int
     meshes_bytes: int
+    #: For a while, before the tracer and the film are there.
+    reading_bytes: int
     tracer_bytes: int
     film_bytes: int
     base_bytes: int
 
     @property
     def total_bytes(self) -> int:
-        """Everything together."""
-        return self.meshes_bytes + self.tracer_bytes + self.film_bytes + self.base_bytes
+        """The most that is held at one time."""
+        rendering = self.tracer_bytes + self.film_bytes
+        return self.base_bytes + self.meshes_bytes + max(self.reading_bytes, rendering)
 
 
-def memory_estimate(scene: Scene, *, bands: int = 0) -> MemoryEstimate:
-    """Return the memory that rendering ``scene`` takes, with ``bands`` spectral channels kept.
+def memory_estimate(scene: Scene, *, bands: int = 0, layers: int = 0) -> MemoryEstimate:
+    """Return the memory that rendering takes, with spectral ``bands`` and ``layers`` kept.
 
     It does not depend on the number of samples.
 
@@ -55,7 +63,38 @@ def memory_estimate(scene: Scene, *, bands: int = 0) -> MemoryEstimate:
     return MemoryEstimate(
         triangles,
         meshes,
+        _READING_BYTES_PER_TRIANGLE * max((len(mesh.triangles) for mesh in placed), default=0),
         _TRACER_BYTES_PER_TRIANGLE * triangles,
-        pixels * (_FILM_BYTES_PER_PIXEL + _BAND_BYTES_PER_PIXEL * bands),
+        pixels
+        * (
+            _FILM_BYTES_PER_PIXEL
+            + _BAND_BYTES_PER_PIXEL * bands
+            + _LAYER_BYTES_PER_PIXEL * layers
+        ),
         _BASE_BYTES,
     )
+
+
+def check_memory(estimate: MemoryEstimate, most_bytes: float | None) -> None:
+    """Refuse a picture that would not fit; None takes what the machine has to give now.
+
+    Raises:
+        LamplitError: It would take more.
+    """
+    limit = _available_bytes() if most_bytes is None else most_bytes
+    if estimate.total_bytes > limit:
+        raise LamplitError(
+            f"this picture takes about {estimate.total_bytes / 2**30:.3g} GiB, and "
+            f"{limit / 2**30:.3g} GiB may be used: make it smaller, keep fewer bands or layers, "
+            "or raise --max-memory"
+        )
+
+
+def _available_bytes() -> float:
+    """Return what can be had without swapping; no limit where the system does not say."""
+    try:
+        lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
+    except OSError:
+        return float("inf")
+    found = [line.split() for line in lines if line.startswith("MemAvailable:")]
+    return 1024.0 * float(found[0][1]) if found else float("inf")

@@ -97,7 +97,7 @@ impl PathWalk<'_> {
     /// Add what one point of the emitters sends straight to a vertex.
     fn see_emitters(&mut self, branch: &mut Branch, vertex: &Vertex<'_>, lanes: &SampledSpectrum) {
         let emitters = &self.scene.emitters;
-        if emitters.is_empty() {
+        if emitters.is_empty() || branch.depth >= self.settings.max_depth {
             return;
         }
         let [u, v, w, _] = branch.sampler.next_4d();
@@ -155,7 +155,7 @@ impl PathWalk<'_> {
                 return reached.then(|| (share, self.index(&interior)));
             }
             let beyond = interior.through(place.faces(), |_, _| {});
-            if self.scene.interface(&interior, &beyond).is_some() {
+            if self.boundary(&interior, &beyond).is_some() {
                 return None;
             }
             interior = beyond;

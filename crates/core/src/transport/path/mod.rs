@@ -142,7 +142,7 @@ impl<'a> PathWalk<'a> {
                 self.tally.lose(body, cause);
                 lost = Some(body);
             });
-            if let Some(face) = self.scene.interface(&branch.interior, &beyond) {
+            if let Some(face) = self.boundary(&branch.interior, &beyond) {
                 let meeting = Meeting::new(hit, branch.ray.direction);
                 return Event::Interface(meeting, face, beyond);
             }
@@ -155,6 +155,12 @@ impl<'a> PathWalk<'a> {
                 return Event::Lost;
             }
         }
+    }
+
+    /// The face at which light turns: where matter changes, unless its index is the same on all lanes.
+    fn boundary(&self, here: &Interior, beyond: &Interior) -> Option<Face> {
+        let face = self.scene.interface(here, beyond)?;
+        (self.index(here) != self.index(beyond)).then_some(face)
     }
 
     fn lose(&mut self, branch: &Branch, body: BodyId, cause: LostRay) -> Event<'a> {
