@@ -10,7 +10,7 @@ RUST := Cargo.toml Cargo.lock $(shell find crates -name '*.rs' -o -name Cargo.to
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test check format bench validate docs wheel clean
+.PHONY: help demo test check format bench validate mutants docs wheel clean
 
 help: ## say what each target does
 	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 10
@@ -76,6 +76,9 @@ bench: $(CORE) $(VENV)/.tools $(PEERS)/.ready ## measure speed against peers; PA
 
 validate: $(CORE) $(VENV)/.tools $(PEERS)/.ready ## hold the physics against closed forms and Mitsuba; writes docs/validation.md
 	$(BIN)/python benchmarks/validate.py $(CASES)
+
+mutants: $(VENV)/.ready ## break the physics on purpose, fault by fault: do the tests notice? An hour
+	$(BIN)/python tools/mutants.py $(NAMES)
 
 docs: $(CORE) $(VENV)/.tools ## make the pictures, tables and API pages of docs/ again
 	$(BIN)/python docs/make.py

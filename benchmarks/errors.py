@@ -38,7 +38,8 @@ def time_to_reach(times_s: list[float], errors: list[float], wanted: float) -> f
     which both relative standard deviation and small colour differences follow.
     """
     order = np.argsort(times_s)
-    time, error = np.log(np.asarray(times_s)[order]), np.log(np.asarray(errors)[order])
+    time: Array = np.log(np.asarray(times_s))[order]
+    error: Array = np.log(np.asarray(errors))[order]
     falling: Array = np.minimum.accumulate(error)
     goal = np.log(wanted)
     if goal >= falling[0]:

@@ -6,7 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from comparison_scenes import background, picture, unlit_lamp, without_dispersion
+from comparison_scenes import Light, background, picture, unlit_lamp, without_dispersion
 
 import lamplit as ll
 from lamplit.lamps import write_lamp
@@ -29,8 +29,13 @@ _PAINT = {
 }
 
 
-def on_table(material: Table, shape: Table, *, size: tuple[int, int] = (96, 64)) -> ll.Scene:
-    """Return one body over a grey floor in the studio's light; ``shape`` is about 20 mm large."""
+def on_table(material: Table, shape: Table) -> ll.Scene:
+    """Return one body, about 20 mm large, over a grey floor.
+
+    It stands in the studio's light; if it is rough, in an even surround: what a model loses of the
+    light is then a share of what the eye sees everywhere.
+    """
+    light: Light = "surround" if "roughness" in material else "studio"
     return _scene(
         {"body": material, "floor": {"kind": "diffuse", "reflectance": 0.5}},
         [
@@ -44,8 +49,8 @@ def on_table(material: Table, shape: Table, *, size: tuple[int, int] = (96, 64))
                 "radius_mm": 60.0,
             },
         ],
-        size=size,
-        background=background("studio").model_dump(exclude_unset=True),
+        size=(96, 64),
+        background=background(light).model_dump(exclude_unset=True),
     )
 
 

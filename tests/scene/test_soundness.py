@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 import trimesh
 
+from lamplit.errors import LamplitError
 from lamplit.scene import Finding, Scene, check_scene, memory_estimate, parse_scene
+from lamplit.scene.memory import check_memory
 
 Table = dict[str, object]
 
@@ -230,8 +232,19 @@ def test_the_memory_estimate_counts_pixels_bands_and_triangles(tmp_path: Path) -
     scene = scene_of(twice, tmp_path, image=image)
     estimate = memory_estimate(scene)
     assert estimate.triangles == 2 * 5120
-    assert estimate.film_bytes == 96_000_000
-    assert memory_estimate(scene, bands=10).film_bytes == 176_000_000
+    assert estimate.film_bytes == 112_000_000
+    assert memory_estimate(scene, bands=10).film_bytes == 272_000_000
+    assert memory_estimate(scene, layers=2).film_bytes == 320_000_000
     # The file is read once, and both copies are traced.
     assert estimate.meshes_bytes == 5120 * 12 + 2562 * 24
-    assert estimate.tracer_bytes == 2 * 5120 * 120
+    assert estimate.tracer_bytes == 2 * 5120 * 100
+    assert estimate.reading_bytes == 5120 * 520
+
+
+def test_a_picture_larger_than_the_memory_is_refused_before_it_is_begun(tmp_path: Path) -> None:
+    image = {"width": 1000, "height": 1000, "samples": 4}
+    ball: Table = {"kind": "sphere", "centre_mm": [0.0, 0.0, 0.0], "radius_mm": 20.0}
+    estimate = memory_estimate(scene_of([ball], tmp_path, image=image))
+    check_memory(estimate, estimate.total_bytes)
+    with pytest.raises(LamplitError, match=r"takes about .* GiB, and .* raise --max-memory"):
+        check_memory(estimate, estimate.total_bytes - 1)

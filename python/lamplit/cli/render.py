@@ -62,6 +62,12 @@ def render(
         bool, typer.Option("--gamut-mask", help="Also draw which pixels the display cannot show.")
     ] = False,
     bits: BitsOption = Bits.eight,
+    max_memory: Annotated[
+        float | None,
+        typer.Option(
+            "--max-memory", metavar="GIB", help="Refuse what takes more; else what is free."
+        ),
+    ] = None,
 ) -> None:
     """Render SCENE: picture.png for the display, picture.exr with exact values, summary.json.
 
@@ -74,6 +80,8 @@ def render(
     from lamplit.report.atomic import prepare_output
     from lamplit.report.picture_files import picture_files, write_picture
     from lamplit.report.progress import Progress
+    from lamplit.scene.memory import MOST_BANDS, check_memory, memory_estimate
+    from lamplit.scene.shining import light_groups
 
     scene = run.load()
     asked: dict[str, Any] = {
@@ -85,6 +93,10 @@ def render(
         "layers": layers,
     }
     settled = engine.plan(scene, **asked)
+    estimate = memory_estimate(
+        scene, bands=MOST_BANDS if spectral else 0, layers=len(light_groups(scene)) if layers else 0
+    )
+    check_memory(estimate, None if max_memory is None else max_memory * 2**30)
     prepare_output(run.output, picture_files(layers=layers, gamut_mask=gamut_mask))
     pixels = scene.image.width * scene.image.height
     progress = Progress(

@@ -8,9 +8,16 @@ import numpy as np
 from lamplit import _core
 from lamplit.engine.carrier import Array, Carrier
 from lamplit.engine.lighting import core_background, core_emission, radiance
+from lamplit.engine.matter import core_matter
 from lamplit.errors import SceneError
-from lamplit.materials.models import Dielectric, HallTerms, Material
-from lamplit.materials.optics import LINE_D_NM
+from lamplit.materials.models import (
+    Conductor,
+    Dielectric,
+    Glossy,
+    HallTerms,
+    Material,
+    Mirror,
+)
 from lamplit.scene import ResolvedObject, Scene
 from lamplit.scene.lighting import DirectionalLight, PointLight, SphereLight
 from lamplit.scene.objects import (
@@ -85,52 +92,14 @@ class _Assembly:
             self._builder.add_emission(body, emission, self._groups.index(thing.emission.group))
 
     def _add_material(self, material: Material) -> int:
-        matter, hall = self._matter(material), self._hall(material)
-        if material.kind in ("diffuse", "checker", "diffuse-transmitter"):
+        matter, hall = core_matter(material, self._carrier), self._hall(material)
+        if not isinstance(material, (Dielectric, Conductor, Mirror, Glossy)):
             return self._builder.add_material(matter, hall)
         texture = material.texture
-        patch = texture and (texture.facing, float(np.cos(np.radians(texture.within_deg))))
-        roughness = material.roughness
-        return self._builder.add_material(matter, hall, roughness=roughness, texture=patch)
-
-    def _matter(self, material: Material) -> _core.Matter:
-        carrier, matter = self._carrier, _core.Matter
-        match material.kind:
-            case "dielectric":
-                absorption = carrier.absorption_per_mm(material.absorption_per_mm)
-                index = carrier.index(material.index)
-                turbid = material.scattering
-                return matter.dielectric(
-                    index,
-                    _index_d(material),
-                    absorption,
-                    scattering_per_mm=turbid and carrier.reflectance(turbid.per_mm),
-                    anisotropy=turbid.anisotropy if turbid else 0.0,
-                )
-            case "conductor":
-                n, k = carrier.metal(material.index), carrier.metal(material.extinction)
-                coat = material.lacquer
-                lacquer = coat and (
-                    carrier.index(coat.index),
-                    carrier.reflectance(coat.optical_depth),
-                )
-                return matter.conductor(n, k, material.factor, lacquer=lacquer)
-            case "mirror":
-                return matter.mirror(carrier.reflectance(material.reflectance_at))
-            case "diffuse":
-                return matter.diffuse(carrier.reflectance(material.reflectance_at))
-            case "diffuse-transmitter":
-                reflectance = carrier.reflectance(material.reflectance_at)
-                return matter.transmitter(
-                    reflectance, carrier.reflectance(material.transmittance_at)
-                )
-            case "checker":
-                first = carrier.reflectance(material.reflectance_a_at)
-                second = carrier.reflectance(material.reflectance_b_at)
-                return matter.checker(first, second, material.square_mm)
-            case "glossy":
-                index = carrier.index(material.index)
-                return matter.glossy(index, carrier.reflectance(material.reflectance_at))
+        patch = None
+        if texture is not None:
+            patch = (texture.facing, float(np.cos(np.radians(texture.within_deg))))
+        return self._builder.add_material(matter, hall, roughness=material.roughness, texture=patch)
 
     def _hall(self, material: Material) -> _core.HallTerms:
         terms: HallTerms = material.hall_terms()
@@ -174,13 +143,6 @@ class _Assembly:
         if self._scene.ambient is not None:
             ambient = radiance(self._scene, self._carrier, self._scene.ambient, "ambient")
             self._builder.set_ambient(ambient)
-
-
-def _index_d(material: Dielectric) -> float:
-    """Return the index that steers rays: n_d, or that of the nearest end of the data."""
-    spectrum = material.refractive_index.index()
-    low, high = spectrum.domain_nm
-    return float(spectrum(np.array([np.clip(LINE_D_NM, low, high)]))[0])
 
 
 def _defining_numbers(shape: Object) -> list[float]:

@@ -65,6 +65,10 @@ class Carrier(Protocol):
         """Return an absorption coefficient in 1/mm."""
         ...
 
+    def per_mm(self, spectrum: Spectrum) -> Array:
+        """Return a scattering coefficient in 1/mm, which may exceed 1."""
+        ...
+
     def colour_matching(self) -> tuple[Array, Array, Array]:
         """Return what a path's radiance is multiplied with and summed to X, Y and Z in cd/m²."""
         ...
@@ -149,7 +153,7 @@ class SpectralCarrier:
         """Return the values on the wavelengths."""
         return spectrum(self.wavelengths_nm)
 
-    index = metal = absorption_per_mm = reflectance
+    index = metal = absorption_per_mm = per_mm = reflectance
 
     def colour_matching(self) -> tuple[Array, Array, Array]:
         """Return K_M x̄ Δλ, K_M ȳ Δλ, K_M z̄ Δλ; every sample stands for all phases."""
@@ -231,6 +235,11 @@ class RgbCarrier:
         """Return −ln of the RGB transmittance of 1 mm."""
         one_millimetre = self.reflectance(lambda nm: np.exp(-spectrum(nm)))
         return -np.log(np.maximum(one_millimetre, 1e-6))
+
+    def per_mm(self, spectrum: Spectrum) -> Array:
+        """Return the mean coefficients under the scene's white, as R, G and B weigh it."""
+        seen = self._white * spectrum(self._spectral.wavelengths_nm)
+        return self._lanes(np.maximum(self._rgb(seen) / self._white_rgb, 0.0))
 
     def colour_matching(self) -> tuple[Array, Array, Array]:
         """Return the rows of the matrix from RGB to XYZ, on the first three lanes."""

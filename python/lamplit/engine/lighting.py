@@ -118,7 +118,7 @@ def core_emission(emission: ResolvedEmission, carrier: Carrier, *, where: str) -
             shines = _core.Emission.radiance(carrier.light(spectrum, amount, where=where))
         case "spectral_radiance":
             shines = _core.Emission.radiance(carrier.absolute(spectrum))
-    if emission.photometry is not None and emission.frame is not None:
+    if emission.photometry is not None:
         polar, azimuths, intensities = _grid(emission.photometry)
         axes = emission.photometry.polar.frame @ emission.frame
         shines.set_intensities(polar, azimuths, intensities, axes.tolist())

@@ -84,9 +84,7 @@ class _Finished(_Material):
     roughness: Roughness = Field(
         default=0.0, description="α of GGX: 0 smooth, or 0.001 to 1 (path)"
     )
-    texture: Texture | None = Field(
-        default=None, description="left out: all faces are alike"
-    )
+    texture: Texture | None = Field(default=None, description="left out: all faces are alike")
 
     @model_validator(mode="after")
     def _is_rough_where_textured(self) -> _Finished:
@@ -102,9 +100,7 @@ class Dielectric(_Finished):
     internal_transmittance: TransmittanceSpec | None = Field(
         default=None, description="left out: perfectly clear"
     )
-    scattering: Scattering | None = Field(
-        default=None, description="left out: no turbidity (path)"
-    )
+    scattering: Scattering | None = Field(default=None, description="left out: no turbidity (path)")
 
     def index(self, wavelengths_nm: ArrayLike) -> Array:
         """Return n(λ)."""

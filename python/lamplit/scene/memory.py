@@ -20,6 +20,8 @@ _MESH_BYTES_PER_VERTEX = 3 * 8
 _FILM_BYTES_PER_PIXEL = 56 + 8 + 2 * 24
 _BAND_BYTES_PER_PIXEL = 16
 _LAYER_BYTES_PER_PIXEL = 56 + 2 * 24
+#: Spectral bands of a pixel, at most.
+MOST_BANDS = 80
 #: The interpreter with its libraries, and spectral tables.
 _BASE_BYTES = 80 * 2**20
 
@@ -66,11 +68,7 @@ def memory_estimate(scene: Scene, *, bands: int = 0, layers: int = 0) -> MemoryE
         _READING_BYTES_PER_TRIANGLE * max((len(mesh.triangles) for mesh in placed), default=0),
         _TRACER_BYTES_PER_TRIANGLE * triangles,
         pixels
-        * (
-            _FILM_BYTES_PER_PIXEL
-            + _BAND_BYTES_PER_PIXEL * bands
-            + _LAYER_BYTES_PER_PIXEL * layers
-        ),
+        * (_FILM_BYTES_PER_PIXEL + _BAND_BYTES_PER_PIXEL * bands + _LAYER_BYTES_PER_PIXEL * layers),
         _BASE_BYTES,
     )
 

@@ -2,6 +2,7 @@
 //! [`Pilot`] and [`Allocation`]: how many samples each pixel takes.
 
 use crate::film::Film;
+use crate::sampling::PixelSequence;
 
 /// What a first round of samples tells of every pixel. Its samples are then thrown away: a pixel
 /// whose own samples decided how many it takes would stop when they happen to agree, and be biased.
@@ -21,9 +22,10 @@ pub(super) struct Allocation {
 /// black has no meaning.
 const FLOOR: f64 = 0.01;
 
-/// No pixel is taken to be quieter than this share of the mean noise: it may have missed what is
-/// bright and rare.
-const QUIETEST: f64 = 0.1;
+/// No pixel is taken to be quieter than this share of the mean noise, since it may have missed what
+/// is bright and rare, nor louder than this multiple, since it may have met it by chance.
+const QUIETEST: f64 = 0.25;
+const LOUDEST: f64 = 16.0;
 
 impl Pilot {
     /// How many samples of every pixel the first round has.
@@ -31,8 +33,7 @@ impl Pilot {
 
     /// Read a first round.
     ///
-    /// A pixel's variance is at least the mean of it and its neighbours': its few samples may all
-    /// have missed what theirs saw.
+    /// A pixel takes the mean variance of it and its neighbours: its few samples tell little.
     pub fn of(film: &Film) -> Self {
         let pixels = &film.pixels;
         let mean = pixels.iter().map(|pixel| pixel.mean()[1]).sum::<f64>() / pixels.len() as f64;
@@ -43,7 +44,7 @@ impl Pilot {
         let own: Vec<f64> = (0..pixels.len()).map(variance).collect();
         let noise = (0..pixels.len()).map(|at| {
             let tone = pixels[at].mean()[1] + FLOOR * mean;
-            let spread = own[at].max(mean_round(&own, film.width as usize, at)).sqrt();
+            let spread = mean_round(&own, film.width as usize, at).sqrt();
             if tone > 0.0 {
                 spread / tone
             } else {
@@ -51,8 +52,9 @@ impl Pilot {
             }
         });
         let mut noise: Vec<f64> = noise.collect();
-        let least = QUIETEST * noise.iter().sum::<f64>() / noise.len() as f64;
-        noise.iter_mut().for_each(|noise| *noise = noise.max(least));
+        let mean = noise.iter().sum::<f64>() / noise.len() as f64;
+        let bounds = (QUIETEST * mean, LOUDEST * mean);
+        noise.iter_mut().for_each(|noise| *noise = noise.clamp(bounds.0, bounds.1));
         let cost = film.segments.iter().zip(pixels);
         let cost = cost.map(|(segments, pixel)| *segments as f64 / f64::from(pixel.samples.max(1)));
         Self { noise, cost: cost.map(|cost| cost.max(1.0)).collect() }
@@ -74,7 +76,7 @@ impl Pilot {
             is_spent || target.is_some_and(|target| self.error_of(allocation) <= target)
         };
         let (mut low, mut high) = (0.0, 1.0);
-        while !suffices(&self.scaled(high)) {
+        while high < 1e12 && !suffices(&self.scaled(high)) {
             (low, high) = (high, 2.0 * high);
         }
         for _ in 0..40 {
@@ -90,8 +92,9 @@ impl Pilot {
 
     fn scaled(&self, scale: f64) -> Allocation {
         const FEWEST: f64 = 8.0;
+        const MOST: f64 = PixelSequence::MOST_SAMPLES as f64;
         let count = |(noise, cost): (&f64, &f64)| {
-            (scale * noise / cost.sqrt()).ceil().clamp(FEWEST, 1e6) as u32
+            (scale * noise / cost.sqrt()).ceil().clamp(FEWEST, MOST) as u32
         };
         Allocation { counts: self.noise.iter().zip(&self.cost).map(count).collect() }
     }
@@ -159,7 +162,7 @@ mod tests {
         let allocation = pilot.allocate(100.0, None);
         let counts: Vec<u32> = (0..5).map(|pixel| allocation.of(pixel)).collect();
         let share = f64::from(counts[1]) / f64::from(counts[0]);
-        assert!((share - 0.5_f64.sqrt()).abs() < 0.01, "half the variance, {counts:?}");
+        assert!((share - (2.0_f64 / 3.0).sqrt()).abs() < 0.01, "1/3 and 1/2 of it, {counts:?}");
         assert!(counts[2] == counts[4] && counts[2] < counts[1], "{counts:?}");
         let total = allocation.total() as f64;
         assert!((total - 500.0).abs() <= 5.0, "{total}");
@@ -179,7 +182,8 @@ mod tests {
         for pixel in &mut film.pixels {
             pixel.add([1.0, 1.5, 1.0]);
         }
-        film.segments[0] *= 4;
+        film.segments.fill(17);
+        film.segments[0] = 68;
         let allocation = Pilot::of(&film).allocate(1000.0, None);
         let ratio = f64::from(allocation.of(4)) / f64::from(allocation.of(0));
         assert!((ratio - 2.0).abs() < 0.01, "{ratio}");
