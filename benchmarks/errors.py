@@ -40,7 +40,7 @@ def time_to_reach(times_s: list[float], errors: list[float], wanted: float) -> f
     order = np.argsort(times_s)
     time: Array = np.log(np.asarray(times_s))[order]
     error: Array = np.log(np.asarray(errors))[order]
-    falling: Array = np.minimum.accumulate(error)
+    falling = np.array([float(error[: at + 1].min()) for at in range(error.size)])
     goal = np.log(wanted)
     if goal >= falling[0]:
         return float(np.exp(time[0] - 2.0 * (goal - falling[0])))

@@ -29,9 +29,9 @@ mod _core {
     #[pymodule_export]
     use super::builder::SceneBuilder;
     #[pymodule_export]
-    use super::material::{HallTerms, Matter};
-    #[pymodule_export]
     use super::emission::Emission;
+    #[pymodule_export]
+    use super::material::{HallTerms, Matter};
     #[pymodule_export]
     use super::outcome::Render;
     #[pymodule_export]

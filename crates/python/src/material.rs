@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 OR MIT
 //! `Material`: the optics of a surface or body, from arrays.
 
-use lamplit_core::matter::{
-    Checker, Dielectric, HallTerms as Terms, Lacquer, Optics, Scattering,
-};
+use lamplit_core::matter::{Checker, Dielectric, HallTerms as Terms, Lacquer, Optics, Scattering};
 use pyo3::prelude::*;
 
 use crate::arrays::{table, Spectrum};

@@ -54,7 +54,9 @@ impl Pilot {
         let mut noise: Vec<f64> = noise.collect();
         let mean = noise.iter().sum::<f64>() / noise.len() as f64;
         let bounds = (QUIETEST * mean, LOUDEST * mean);
-        noise.iter_mut().for_each(|noise| *noise = noise.clamp(bounds.0, bounds.1));
+        for noise in &mut noise {
+            *noise = noise.clamp(bounds.0, bounds.1);
+        }
         let cost = film.segments.iter().zip(pixels);
         let cost = cost.map(|(segments, pixel)| *segments as f64 / f64::from(pixel.samples.max(1)));
         Self { noise, cost: cost.map(|cost| cost.max(1.0)).collect() }

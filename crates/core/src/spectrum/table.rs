@@ -59,7 +59,10 @@ impl SpectralTable {
 
     /// The table of `f` of three tables' lanes, phase by phase.
     #[must_use]
-    pub fn combine(tables: &[Self; 3], f: impl Fn([SampledSpectrum; 3]) -> SampledSpectrum) -> Self {
+    pub fn combine(
+        tables: &[Self; 3],
+        f: impl Fn([SampledSpectrum; 3]) -> SampledSpectrum,
+    ) -> Self {
         let [a, b, c] = tables;
         let rows = a.rows.iter().zip(&b.rows).zip(&c.rows);
         Self { rows: rows.map(|((a, b), c)| f([*a, *b, *c])).collect() }

@@ -14,7 +14,7 @@ impl PathWalk<'_> {
     pub(super) fn cross(
         &mut self,
         mut branch: Branch,
-        meeting: Meeting,
+        meeting: &Meeting,
         face: Face,
         beyond: Interior,
     ) -> Ways {
@@ -34,10 +34,10 @@ impl PathWalk<'_> {
         };
         let shares = [reflected, SampledSpectrum::ONE - reflected];
         let [near, far] = self.divide(branch, shares, choice);
-        let near = near.map(|branch| mirrored(branch, &meeting, reflected));
+        let near = near.map(|branch| mirrored(branch, meeting, reflected));
         let far = far.and_then(|mut branch| {
             branch.throughput *= shares[1];
-            self.refracted(branch, &meeting, eta, beyond, lane)
+            self.refracted(branch, meeting, eta, beyond, lane)
         });
         [near, far]
     }
@@ -68,7 +68,7 @@ impl PathWalk<'_> {
     }
 
     /// The ways on at opaque matter: mirrored and scattered.
-    pub(super) fn answer(&mut self, mut branch: Branch, meeting: Meeting) -> Ways {
+    pub(super) fn answer(&mut self, mut branch: Branch, meeting: &Meeting) -> Ways {
         let material = self.scene.material_of(meeting.hit.body);
         let medium_index = self.index(&branch.interior);
         let point = &meeting.hit.point;
@@ -78,12 +78,12 @@ impl PathWalk<'_> {
             return [None, self.scatter(branch, &vertex)];
         };
         if !bsdf.scatters() {
-            return [Some(mirrored(branch, &meeting, mirror)), None];
+            return [Some(mirrored(branch, meeting, mirror)), None];
         }
-        let wi = Vertex::local(&meeting);
+        let wi = Vertex::local(meeting);
         let [choice, ..] = branch.sampler.next_4d();
         let [near, rest] = self.divide(branch, [mirror, bsdf.albedo(wi)], choice);
-        let near = near.map(|branch| mirrored(branch, &meeting, mirror));
+        let near = near.map(|branch| mirrored(branch, meeting, mirror));
         let rest = rest.and_then(|branch| {
             let vertex = Vertex::on_surface(meeting, bsdf, branch.interior);
             self.scatter(branch, &vertex)

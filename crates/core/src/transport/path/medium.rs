@@ -1,13 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0 OR MIT
 //! The way through a body: absorption exact, scattering sampled.
 
+use crate::math::DVec3;
 use crate::scene::BodyId;
 
 use super::branch::Branch;
-use super::vertex::Vertex;
 use super::{pick, PathWalk};
 
-impl<'a> PathWalk<'a> {
+/// Where and how a body scatters a branch.
+pub(super) struct Scattered {
+    /// The place.
+    pub position: DVec3,
+    /// g of the phase function.
+    pub anisotropy: f64,
+}
+
+impl PathWalk<'_> {
     /// Take a branch `length` mm through `body`, or to where the body scatters it before.
     ///
     /// Absorption (Bouguer–Beer) multiplies. The distance to a scattering is drawn from
@@ -18,10 +26,10 @@ impl<'a> PathWalk<'a> {
         branch: &mut Branch,
         body: BodyId,
         length: f64,
-    ) -> Option<Vertex<'a>> {
+    ) -> Option<Scattered> {
         let medium = self.scene.material_of(body).dielectric()?;
         let mut distance = length;
-        let mut vertex = None;
+        let mut scattered = None;
         if let Some(scattering) = &medium.scattering {
             let coefficient = scattering.coefficient.at(self.wavelengths);
             let lanes = self.lanes(branch.throughput);
@@ -33,8 +41,7 @@ impl<'a> PathWalk<'a> {
                 let density = coefficient * coefficient.transmittance(distance);
                 branch.throughput *= density * (1.0 / lanes.dot(density));
                 let position = branch.ray.at(distance);
-                let (wi, interior) = (-branch.ray.direction, branch.interior);
-                vertex = Some(Vertex::in_body(position, wi, scattering.anisotropy, interior));
+                scattered = Some(Scattered { position, anisotropy: scattering.anisotropy });
             } else {
                 let through = coefficient.transmittance(distance);
                 branch.throughput *= through * (1.0 / lanes.dot(through));
@@ -44,6 +51,6 @@ impl<'a> PathWalk<'a> {
         let before = self.weight(branch.throughput);
         branch.throughput *= medium.absorption.at(self.wavelengths).transmittance(distance);
         self.tally.ledger.absorb(body, before, self.weight(branch.throughput));
-        vertex
+        scattered
     }
 }

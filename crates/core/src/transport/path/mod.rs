@@ -30,6 +30,7 @@ use super::gathered::Gathered;
 use super::meeting::Meeting;
 use super::tally::Tally;
 use branch::{Branch, Ways};
+use medium::Scattered;
 use vertex::Vertex;
 
 /// How the walks are spent. None of these changes what the picture tends to, but `max_depth`.
@@ -56,13 +57,13 @@ pub struct PathWalk<'a> {
 }
 
 /// What a branch comes to.
-enum Event<'a> {
+enum Event {
     /// It leaves the scene.
     Escape,
     /// It is lost, and counted.
     Lost,
     /// It is scattered inside a body.
-    Scattering(Vertex<'a>),
+    Scattering(Scattered),
     /// It meets opaque matter.
     Surface(Meeting),
     /// It meets the boundary between two transparent media.
@@ -99,25 +100,27 @@ impl<'a> PathWalk<'a> {
                 self.see_background(&branch);
                 self.tally.ledger.escape(before);
             }
-            Event::Scattering(vertex) => {
+            Event::Scattering(at) => {
+                let wi = -branch.ray.direction;
+                let vertex = Vertex::in_body(at.position, wi, at.anisotropy, branch.interior);
                 let ways = [self.scatter(branch, &vertex), None];
                 self.go_on(ways, before, None);
             }
             Event::Surface(meeting) => {
                 self.see_emission(&branch, &meeting);
                 let body = meeting.hit.body;
-                let ways = self.answer(branch, meeting);
+                let ways = self.answer(branch, &meeting);
                 self.go_on(ways, before, Some(body));
             }
             Event::Interface(meeting, face, beyond) => {
-                let ways = self.cross(branch, meeting, face, beyond);
+                let ways = self.cross(branch, &meeting, face, beyond);
                 self.go_on(ways, before, None);
             }
         }
     }
 
     /// Follow a branch to what it meets next, through all surfaces that are none to light.
-    fn next_event(&mut self, branch: &mut Branch) -> Event<'a> {
+    fn next_event(&mut self, branch: &mut Branch) -> Event {
         loop {
             self.tally.eye_rays += 1;
             let place = self.scene.first_place(&branch.ray);
@@ -126,8 +129,8 @@ impl<'a> PathWalk<'a> {
                 if place.is_none() {
                     return self.lose(branch, body, LostRay::EndedInside);
                 }
-                if let Some(vertex) = self.pass_through(branch, body, length) {
-                    return Event::Scattering(vertex);
+                if let Some(at) = self.pass_through(branch, body, length) {
+                    return Event::Scattering(at);
                 }
             }
             let Some(place) = place else {
@@ -163,7 +166,7 @@ impl<'a> PathWalk<'a> {
         (self.index(here) != self.index(beyond)).then_some(face)
     }
 
-    fn lose(&mut self, branch: &Branch, body: BodyId, cause: LostRay) -> Event<'a> {
+    fn lose(&mut self, branch: &Branch, body: BodyId, cause: LostRay) -> Event {
         self.tally.lose(body, cause);
         self.tally.ledger.lose(self.weight(branch.throughput));
         Event::Lost

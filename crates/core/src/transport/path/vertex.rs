@@ -18,6 +18,7 @@ pub(super) struct Vertex<'a> {
     place: Place<'a>,
 }
 
+#[expect(clippy::large_enum_variant, reason = "made at every hit: a box would cost an allocation")]
 enum Place<'a> {
     Surface {
         point: SurfacePoint,
@@ -39,12 +40,16 @@ enum Place<'a> {
 
 impl<'a> Vertex<'a> {
     /// A vertex on opaque matter or on a sheet, with `near` on both sides.
-    pub fn on_surface(meeting: Meeting, bsdf: Bsdf<'a>, near: Interior) -> Self {
+    #[expect(clippy::large_types_passed_by_value, reason = "moved into the vertex")]
+    #[inline]
+    pub fn on_surface(meeting: &Meeting, bsdf: Bsdf<'a>, near: Interior) -> Self {
         Self::on_interface(meeting, bsdf, near, near)
     }
 
     /// A vertex on a rough boundary between the media of `near` and `far`.
-    pub fn on_interface(meeting: Meeting, bsdf: Bsdf<'a>, near: Interior, far: Interior) -> Self {
+    #[expect(clippy::large_types_passed_by_value, reason = "moved into the vertex")]
+    #[inline]
+    pub fn on_interface(meeting: &Meeting, bsdf: Bsdf<'a>, near: Interior, far: Interior) -> Self {
         let point = meeting.hit.point;
         let frame = frame(meeting.normal);
         let wi = frame.transpose() * meeting.wi;
@@ -70,7 +75,7 @@ impl<'a> Vertex<'a> {
             Place::Surface { frame, wi, bsdf, .. } => bsdf.eval(*wi, frame.transpose() * wo),
             Place::Body { wi, anisotropy } => {
                 SampledSpectrum::splat(henyey_greenstein(-wi.dot(wo), *anisotropy))
-            },
+            }
         }
     }
 
@@ -90,7 +95,7 @@ impl<'a> Vertex<'a> {
             }
             Place::Body { wi, anisotropy } => {
                 Some(sample_henyey_greenstein(*wi, *anisotropy, [u[1], u[2]]))
-            },
+            }
         }
     }
 
