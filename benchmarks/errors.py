@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -41,9 +43,10 @@ def time_to_reach(times_s: list[float], errors: list[float], wanted: float) -> f
     time: Array = np.log(np.asarray(times_s))[order]
     error: Array = np.log(np.asarray(errors))[order]
     falling = np.array([float(error[: at + 1].min()) for at in range(error.size)])
-    goal = np.log(wanted)
+    goal = math.log(wanted)
     if goal >= falling[0]:
         return float(np.exp(time[0] - 2.0 * (goal - falling[0])))
     if goal <= falling[-1]:
         return float(np.exp(time[-1] + 2.0 * (falling[-1] - goal)))
-    return float(np.exp(np.interp(-goal, -falling, time)))
+    crossing: Array = np.interp([-goal], -falling, time)
+    return math.exp(crossing[0])

@@ -31,7 +31,8 @@ def at_time(row: dict[str, Any], program: str) -> dict[str, float]:
     keys = ("seconds", "samples", "relative_mse", "delta_e")
     means = {key: float(np.mean([rung[key] for rung in rungs])) for key in keys}
     merits = [rung["relative_mse"] * rung["seconds"] for rung in rungs]
-    return {**means, "merit": float(np.mean(merits))}
+    spread = float(np.std(merits, ddof=1) / len(merits) ** 0.5) if len(merits) > 1 else 0.0
+    return {**means, "merit": float(np.mean(merits)), "merit_sigma": spread}
 
 
 def ratios(row: dict[str, Any], peer: str) -> dict[str, float]:
@@ -65,7 +66,8 @@ def as_markdown(found: dict[str, Any]) -> str:
         "Relative MSE of luminance: mean of ((Y − Y₀)/(Y₀ + 1 % of the mean))². Time × error is",
         "what a program needs: it does not depend on how long one waits. Colour: time to the mean",
         "ΔE₀₀ that Mitsuba has then, by log–log interpolation; below Lamplit's first rung by",
-        "ΔE ∝ 1/√time.",
+        "ΔE ∝ 1/√time. ± is the standard error over seeds: rare bright paths in dark pixels make",
+        "the squared error of both programs jump.",
         "",
         "| lamp, light | program | paths/pixel | s | rel. MSE | MSE × s | ΔE₀₀ | Y, × | ΔE, × |",
         "|---|---|---|---|---|---|---|---|---|",
@@ -77,7 +79,8 @@ def as_markdown(found: dict[str, Any]) -> str:
             told = [f"{against[key]:.1f}" if against else "" for key in ("luminance", "colour")]
             lines.append(
                 f"| {row['lamp']}, {row['light']} | {program} | {here['samples']:.0f} "
-                f"| {here['seconds']:.2f} | {here['relative_mse']:.2e} | {here['merit']:.4f} "
+                f"| {here['seconds']:.2f} | {here['relative_mse']:.2e} "
+                f"| {here['merit']:.4f} ± {here['merit_sigma']:.4f} "
                 f"| {here['delta_e']:.2f} | {told[0]} | {told[1]} |"
             )
     if "llvm_ad_spectral" not in programs:
