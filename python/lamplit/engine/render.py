@@ -19,7 +19,7 @@ from lamplit.engine.ledger import Ledger
 from lamplit.engine.plan import Plan, plan
 from lamplit.errors import SceneError
 from lamplit.scene import Scene
-from lamplit.scene.shining import path_notices
+from lamplit.scene.shining import light_notices, path_notices
 
 #: Called with the samples done and to do, over all pixels, a few times a second.
 ProgressCallback = Callable[[int, int], object]
@@ -81,7 +81,9 @@ def render(
         layers=layers,
     )
     scene = settled.scene
-    notices = path_notices(scene) if settled.method == "path" else ()
+    notices = light_notices(scene)
+    if settled.method == "path":
+        notices += path_notices(scene)
     spectral = SpectralCarrier(scene.image.wavelength_range_nm, scene.image.observer)
     carrier: Carrier = spectral
     if colour == "rgb":

@@ -58,6 +58,17 @@ def light_faults(scene: Scene) -> list[LamplitError]:
     return faults
 
 
+def light_notices(scene: Scene) -> tuple[str, ...]:
+    """Return what to know of the light of a scene, by whichever method, one line each."""
+    if not isinstance(scene.background, ImageBackground):
+        return ()
+    notice = (
+        f"the spectra of {scene.background.file} are derived from RGB: colours of dyed matter "
+        "under it are a guess"
+    )
+    return (notice,)
+
+
 def path_notices(scene: Scene) -> tuple[str, ...]:
     """Return what to know of a scene that path transport is about to render, one line each.
 
