@@ -24,7 +24,7 @@ import lamplit as ll
 from lamplit.engine import render
 from lamplit.scene.methods import PathSettings
 
-SIZE = {"width": 200, "height": 100}
+SIZE = {"width": 160, "height": 80}
 SCENES: tuple[tuple[str, Light], ...] = (
     ("p21w", "surround"),
     ("p21w", "studio"),
@@ -36,12 +36,10 @@ SEEDS = (11, 12)
 VARIANTS = (
     (3, 1e-3, 16, False),
     (0, 1e-3, 16, False),
-    (1, 1e-3, 16, False),
     (2, 1e-3, 16, False),
     (4, 1e-3, 16, False),
     (6, 1e-3, 16, False),
     (3, 5e-2, 16, False),
-    (3, 5e-3, 16, False),
     (3, 2e-4, 16, False),
     (3, 1e-3, 64, False),
     (3, 1e-3, 64, True),

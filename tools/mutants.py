@@ -84,9 +84,12 @@ def first_failure(workspace: Path) -> str | None:
 def _first_failure(workspace: Path, command: list[str]) -> str | None:
     build = [*command, "--no-run"]
     built = subprocess.run(build, cwd=workspace, capture_output=True, check=False)  # noqa: S603
+    lines = built.stderr.decode(errors="replace").splitlines()
     if built.returncode != 0:
-        lines = built.stderr.decode(errors="replace").splitlines()
         raise UnusableError(next((line for line in lines if line.startswith("error")), "no build"))
+    if not any(line.strip().startswith("Compiling lamplit-core ") for line in lines):
+        # Then the tests would be those of the fault before, and fail for its sake.
+        raise UnusableError("cargo saw no change, and compiled nothing")
     tests = subprocess.Popen(  # noqa: S603
         command,
         cwd=workspace,
@@ -141,11 +144,14 @@ def try_all(mutants: list[Mutant], workspace: Path) -> dict[Mutant, str]:
             if not failed:
                 left[mutant] = SURVIVES
         except UnusableError as fault:
-            verdict = f"DOES NOT COMPILE: {fault}"
+            verdict = f"NOT TRIED: {fault}"
             left[mutant] = verdict
         (workspace / SOURCES / mutant.file).write_text(original, encoding="utf-8")
         seconds = time.monotonic() - started
         print(f"{mutant.name:{width}}  {seconds:4.0f} s  {verdict}", flush=True)
+    failed = first_failure(workspace)
+    if failed is not None:
+        raise UnusableError(f"with all faults taken back, this test fails: {failed}")
     return left
 
 

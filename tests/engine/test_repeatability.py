@@ -141,6 +141,8 @@ from lamplit import _core
 from lamplit.engine import RenderInterrupted
 
 def main() -> None:
+    # Background jobs of a shell inherit a SIGINT that is ignored.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     scene = ll.load_scene(sys.argv[1])
     sent = []
     def stop():
