@@ -181,7 +181,8 @@ impl Rendering<'_> {
                 if affordable == 0 {
                     break;
                 }
-                length = length.min(affordable);
+                // Half of what is left at a time: how long a sample takes is only an estimate.
+                length = length.min(affordable.div_ceil(2));
             }
         }
     }
