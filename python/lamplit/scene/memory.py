@@ -23,7 +23,7 @@ _LAYER_BYTES_PER_PIXEL = 56 + 2 * 24
 #: Spectral bands of a pixel, at most.
 MOST_BANDS = 80
 #: The interpreter with its libraries, and spectral tables.
-_BASE_BYTES = 80 * 2**20
+_BASE_BYTES = 90 * 2**20
 
 
 @dataclass(frozen=True)
