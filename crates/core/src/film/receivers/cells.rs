@@ -64,7 +64,8 @@ impl Borders {
         let guess = ((angle - first) * self.per_rad) as usize;
         let guess = guess.min(self.count() - 1);
         let fits = self.edges[guess] <= angle && angle < self.edges[guess + 1];
-        let found = if fits { guess + 1 } else { self.edges.partition_point(|edge| *edge <= angle) };
+        let found =
+            if fits { guess + 1 } else { self.edges.partition_point(|edge| *edge <= angle) };
         Some(found.clamp(1, self.count()) - 1)
     }
 }

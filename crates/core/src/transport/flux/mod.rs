@@ -76,6 +76,12 @@ pub enum LightSource {
     Beam(Beam),
 }
 
+impl From<Shining> for LightSource {
+    fn from(shining: Shining) -> Self {
+        Self::Shining(shining)
+    }
+}
+
 impl LightSource {
     /// How many light groups its light is counted to.
     pub fn groups(&self, scene: &Scene) -> usize {
@@ -135,9 +141,10 @@ impl<'a> LightWalk<'a> {
         source: &'a LightSource,
         settings: PathSettings,
     ) -> Result<Self, FluxError> {
-        let [x, y, z] = source.flux(scene).into_iter().fold([0.0; 3], |sum, own| {
-            [0, 1, 2].map(|i| sum[i] + own[i])
-        });
+        let [x, y, z] = source
+            .flux(scene)
+            .into_iter()
+            .fold([0.0; 3], |sum, own| [0, 1, 2].map(|i| sum[i] + own[i]));
         // `visibility` is X + Y + Z of the lane, scaled to a sum of 1 in each phase.
         let scale = [0, 1, 2].map(|i| {
             let table = &scene.colour_matching[i];
@@ -145,7 +152,8 @@ impl<'a> LightWalk<'a> {
         });
         let usual = (x + y + z) / scale.iter().sum::<f64>();
         let sound = y.is_finite() && y > 0.0 && usual.is_finite() && usual > 0.0;
-        sound.then_some(Self { scene, source, settings, usual, luminous_flux: y })
+        sound
+            .then_some(Self { scene, source, settings, usual, luminous_flux: y })
             .ok_or(FluxError::NoFlux)
     }
 
@@ -186,7 +194,14 @@ impl<'a> LightWalk<'a> {
                 let (settings, start) = (self.settings, (ray, interior));
                 let carried = (carried, booked);
                 PathWalk::carry(
-                    scene, settings, wavelengths, sampler, tally, &mut leaving, start, carried,
+                    scene,
+                    settings,
+                    wavelengths,
+                    sampler,
+                    tally,
+                    &mut leaving,
+                    start,
+                    carried,
                 );
             }
         }

@@ -67,7 +67,10 @@ impl RaySet {
         }
         let count = luminosity.phases() * LANES;
         if let Some(ray) = wavelengths.iter().position(|at| *at as usize >= count) {
-            return Err(FluxError::Ray { ray, fault: "its wavelength is not one of the picture's" });
+            return Err(FluxError::Ray {
+                ray,
+                fault: "its wavelength is not one of the picture's",
+            });
         }
         let seen = wavelengths.iter().zip(&fluxes).map(|(at, flux)| {
             let (lane, wavelengths) = lane_of(*at, luminosity.phases());
