@@ -178,6 +178,8 @@ def _values(node: Node) -> str:
         return ", ".join(f"`{json.dumps(choice)}`" for choice in node["enum"])
     if node["type"] == "array":
         return _array(node)
+    if node["type"] == "object":
+        return f"`{{ name = {_PLAIN[node['additionalProperties']['type']]}, .. }}`"
     return _PLAIN[node["type"]] + _limits(node)
 
 
