@@ -7,11 +7,11 @@ from lamplit.engine.compare import Comparison, compare
 from lamplit.engine.features import Features
 from lamplit.engine.image import Image
 from lamplit.engine.ledger import Ledger
-from lamplit.engine.plan import PILOT_SAMPLES, Plan, plan
+from lamplit.engine.plan import FIRST_ROUND_SAMPLES, Plan, plan
 from lamplit.engine.render import RenderInterrupted, render
 
 __all__ = [
-    "PILOT_SAMPLES",
+    "FIRST_ROUND_SAMPLES",
     "Comparison",
     "Features",
     "Image",
