@@ -101,9 +101,13 @@ impl Primitive {
     pub fn closest_hit(&self, ray: &Ray) -> Option<SurfacePoint> {
         let origin = self.to_local.transform_point3(ray.origin);
         let direction = self.to_local.transform_vector3(ray.direction);
-        let (centre, _) = self.shape.bounding_sphere();
+        let (centre, radius) = self.shape.bounding_sphere();
         let shift = (centre - origin).dot(direction) / direction.length_squared();
         let near = origin + direction * shift;
+        // Most rays pass by, farther off than any rounding.
+        if near.distance_squared(centre) > radius * radius * (1.0 + 1e-6) {
+            return None;
+        }
         let accept = |crossing: &Crossing| {
             let t = crossing.t + shift;
             t > 0.0 && t < ray.t_max
