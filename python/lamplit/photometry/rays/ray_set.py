@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Final, Literal, NamedTuple, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from lamplit.photometry.text import PhotometryError
 
@@ -33,11 +33,11 @@ class SpectralTable(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class RaySet:
-    """Rays as a file gives them, lengths in mm, in the file's own frame; n of them.
+    """Rays as a file gives them, n of them, in the file's own frame and in mm.
 
-    The flux of a ray is a share of what ``quantity`` names: lm where it is "luminous", W where it is
-    "radiant". Spectra, where the file has any: either a wavelength for each ray, or one table for all
-    (``spectrum_index`` None), or a table for each ray.
+    The flux of a ray is in lm where ``quantity`` is "luminous" and in W where it is "radiant". Of
+    spectra a file has none, a wavelength for each ray, one table for all (``spectrum_index`` is
+    None), or a table for each ray.
     """
 
     #: (n, 3), in mm.
@@ -85,18 +85,19 @@ class RayFaults:
         self.file = file
         self._byte_of = byte_of
 
-    def refuse_where(self, wrong: NDArray[np.bool_], message: str, values: Array) -> None:
+    def refuse_where(self, wrong: ArrayLike, message: str, values: Array) -> None:
         """Raise if any of ``wrong`` (n,) holds; ``values`` (n,) or (n, 3) fill ``{value}``."""
-        if not wrong.any():
+        rays = np.asarray(wrong, dtype=np.bool_)
+        if not rays.any():
             return
-        at = int(np.argmax(wrong))
+        at = int(np.argmax(rays))
         shown = ", ".join(f"{value:.6g}" for value in np.atleast_1d(values[at]))
-        others = int(np.count_nonzero(wrong)) - 1
+        others = int(np.count_nonzero(rays)) - 1
         besides = f" ({others} other rays have the same fault)" if others else ""
         raise PhotometryError(
             message.replace("{value}", shown) + besides,
             file=self.file,
-            where=f"ray {at + 1} of {len(wrong)}, byte {self._byte_of(at)}",
+            where=f"ray {at + 1} of {len(rays)}, byte {self._byte_of(at)}",
         )
 
 
@@ -106,9 +107,9 @@ def checked_directions(directions: Array, faults: RayFaults) -> Array:
     Raises:
         PhotometryError: One is not finite, has no length, or another one than 1.
     """
-    finite = np.isfinite(directions).all(axis=1)
+    unsound = np.logical_not(np.isfinite(directions)).any(axis=1)
     faults.refuse_where(
-        ~finite, "the direction ({value}) is not finite; get the file anew", directions
+        unsound, "the direction ({value}) is not finite; get the file anew", directions
     )
     with np.errstate(over="ignore"):
         lengths = np.sqrt(np.einsum("ij,ij->i", directions, directions))
@@ -124,14 +125,14 @@ def checked_directions(directions: Array, faults: RayFaults) -> Array:
 
 
 def checked_positions(positions: Array, unit_mm: float, faults: RayFaults) -> Array:
-    """Return ``positions`` (n, 3), in units of ``unit_mm``, in mm; PhotometryError unless finite."""
-    finite = np.isfinite(positions).all(axis=1)
-    faults.refuse_where(~finite, "the start ({value}) is not finite; get the file anew", positions)
+    """Return ``positions`` (n, 3), of ``unit_mm``, in mm, if they are finite."""
+    unsound = np.logical_not(np.isfinite(positions)).any(axis=1)
+    faults.refuse_where(unsound, "the start ({value}) is not finite; get the file anew", positions)
     return positions * unit_mm
 
 
 def checked_flux(flux: Array, faults: RayFaults) -> Array:
-    """Return ``flux`` (n,), finite and not negative; PhotometryError otherwise or where all is 0."""
+    """Return ``flux`` (n,) if it is finite, not negative, and not all 0."""
     faults.refuse_where(
         ~(np.isfinite(flux) & (flux >= 0.0)),
         "the flux {value} must be a number of 0 or more; get the file anew",

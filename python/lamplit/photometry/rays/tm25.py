@@ -84,8 +84,8 @@ class _Header(NamedTuple):
 def read_tm25(path: Path) -> RaySet:
     """Return the rays of an IES TM-25 file; its lengths are mm.
 
-    The flux is luminous where the file has it, unless each ray has a wavelength or a spectrum of its
-    own; it is radiant otherwise. Polarisation, X and Z, and added columns are passed over.
+    The flux is luminous where the file has it, unless each ray has a wavelength or a spectrum of
+    its own; it is radiant otherwise. Polarisation, X and Z, and added columns are passed over.
 
     Raises:
         PhotometryError: The file is none, is damaged, or holds a ray that cannot be.
@@ -109,7 +109,15 @@ def read_tm25(path: Path) -> RaySet:
         columns = _columns(file, header, flags)
         rows = file.rows(header.rays, columns.total)
     faults = RayFaults(path, lambda ray: begins + 4 * columns.total * ray)
-    return _ray_set(header, flags, columns, rows, tables, name, faults)
+    return _ray_set(
+        header=header,
+        flags=flags,
+        columns=columns,
+        rows=rows,
+        tables=tables,
+        name=name,
+        faults=faults,
+    )
 
 
 def _read_header(file: BinaryFile) -> _Header:
@@ -197,7 +205,7 @@ class _Columns(NamedTuple):
     radiant: int
     wavelength: int
     luminous: int
-    index: int
+    spectrum: int
     total: int
 
 
@@ -223,6 +231,7 @@ def _columns(file: BinaryFile, header: _Header, flags: dict[str, bool]) -> _Colu
 
 
 def _ray_set(
+    *,
     header: _Header,
     flags: dict[str, bool],
     columns: _Columns,
@@ -249,7 +258,7 @@ def _ray_set(
         quantity,
         wavelengths,
         tables if header.spectral_data in (3, 4) else (),
-        _indices(rows[:, columns.index], len(tables), faults) if columns.index >= 0 else None,
+        _indices(rows[:, columns.spectrum], len(tables), faults) if columns.spectrum >= 0 else None,
         header.luminous_flux_lm if header.luminous_flux_lm > 0.0 else None,
         header.radiant_flux_w if header.radiant_flux_w > 0.0 else None,
         1.0,
