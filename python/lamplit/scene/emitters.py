@@ -10,6 +10,7 @@ import numpy as np
 from lamplit.colour.tristimulus import luminous_efficacy
 from lamplit.errors import LamplitError, SceneError
 from lamplit.files import resolve_inside
+from lamplit.led_spec import LedSource
 from lamplit.scene.emission import (
     CosineDistribution,
     Emission,
@@ -22,7 +23,7 @@ from lamplit.scene.models import Scene
 from lamplit.scene.objects import Object
 from lamplit.scene.references import resolve_source
 from lamplit.sources import bulb
-from lamplit.spectra_spec import LedSource, NamedSource
+from lamplit.spectra_spec import NamedSource
 from lamplit.spectrum import Array, SpectralDistribution
 
 if TYPE_CHECKING:
