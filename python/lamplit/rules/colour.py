@@ -54,6 +54,8 @@ class Region:
     border: Array
     #: The edge that each of its n pieces belongs to.
     edges: tuple[str, ...]
+    #: (n,), whether light can lie beyond: not beyond the spectral locus or the purple line.
+    crossable: NDArray[np.bool_]
 
     def contains(self, xy: ArrayLike) -> bool:
         """Return whether a chromaticity (2,) lies in the region or on its border."""
@@ -66,15 +68,18 @@ class Region:
 
         ``covariance`` (2, 2) is that of x and y; without it, the colour is exact. The ellipse of
         k standard errors touches the border when ``sigmas`` = k: the plane is stretched until the
-        ellipse is a circle, and there the nearest point of the border is sought.
+        ellipse is a circle, and there the nearest point of the border is sought. From inside, only
+        edges count that light can cross: the colour of an LED lies next to the spectral locus, and
+        no scatter takes it beyond.
         """
         point = np.asarray(xy, dtype=np.float64)
         inside = self.contains(point)
-        distance, _ = _nearest(point, self.border)
+        pieces = self.crossable if inside else np.ones_like(self.crossable)
+        distance, _ = _nearest(point, self.border, pieces)
         spread = np.zeros((2, 2)) if covariance is None else np.asarray(covariance, np.float64)
         factor = np.linalg.cholesky(spread + _SMALLEST_VARIANCE * np.eye(2))
         whitened = np.linalg.solve(factor, (self.border - point).T).T
-        sigmas, at = _nearest(np.zeros(2), whitened)
+        sigmas, at = _nearest(np.zeros(2), whitened, pieces)
         sign = 1.0 if inside else -1.0
         error = distance / sigmas if sigmas > 0.0 else float(np.sqrt(np.trace(spread)))
         return BorderDistance(sign * distance, sigmas, error, self.edges[at])
@@ -142,10 +147,12 @@ def build_region(name: str, written: ColourRegion) -> Region:
         wavelengths.append(nm)
     border: list[Array] = []
     labels: list[str] = []
+    crossable: list[bool] = []
     for at, edge in enumerate(written.edges):
         piece = _piece(edge, corners[at], wavelengths[at], wavelengths[(at + 1) % count])
         border.append(piece)
         labels += [edge.label] * len(piece)
+        crossable += [edge.line is not None] * len(piece)
     return Region(
         name,
         written.title,
@@ -155,6 +162,7 @@ def build_region(name: str, written: ColourRegion) -> Region:
         np.array(wavelengths),
         np.concatenate(border),
         tuple(labels),
+        np.array(crossable),
     )
 
 
@@ -208,13 +216,17 @@ def _on_locus(arc: Edge, line: Array, label: str) -> tuple[Array, float]:
     raise RuleError(f"{label!r} does not meet the spectral locus from {low:g} to {high:g} nm")
 
 
-def _nearest(point: Array, border: Array) -> tuple[float, int]:
-    """Return the distance to a closed line, and the piece of it that is nearest."""
+def _nearest(
+    point: Array, border: Array, pieces: NDArray[np.bool_] | None = None
+) -> tuple[float, int]:
+    """Return the distance to a closed line, or some ``pieces`` of it, and the nearest piece."""
     along = np.roll(border, -1, axis=0) - border
     length = np.sum(along * along, axis=1)
     share = np.sum((point - border) * along, axis=1) / np.where(length > 0.0, length, 1.0)
     foot = border + np.clip(share, 0.0, 1.0)[:, None] * along
     distance = np.hypot(*(foot - point).T)
+    if pieces is not None:
+        distance = np.where(pieces, distance, np.inf)
     at = int(np.argmin(distance))
     return float(distance[at]), at
 

@@ -81,20 +81,18 @@ def visibility_boxes(own: VisibilityField, rule: Rule) -> VisibilityBoxes:
 def ranges_needed(rule: Rule) -> Iterator[Box]:
     """Yield every range that the grid has to cover."""
     entry = rule.entry
-    for own in entry.distribution:
-        if rule.holds(own.when) and chosen_name(own.between, rule.options) != "no":
+    for own in (own for own in entry.distribution if rule.holds(own.when)):
+        if chosen_name(own.between, rule.options) != "no":
             grid = rule.rules.file.grids[chosen_name(own.grid, rule.options)]
             yield Box(grid.h_deg[0], grid.h_deg[-1], grid.v_deg[-1], grid.v_deg[0])
-    for maximum in entry.maximum:
-        if rule.holds(maximum.when) and not maximum.optional and maximum.where == "everywhere":
-            yield from maximum_boxes(maximum, rule.side)
-    for zone in entry.zone:
-        if rule.holds(zone.when):
-            h, v = zip(*zone.polygon_deg, strict=True)
-            yield Box(min(h), max(h), min(v), max(v))
-    for field in entry.field:
-        if rule.holds(field.when):
-            yield from visibility_boxes(field, rule).boxes
-    for ratio in entry.ratio:
-        if rule.holds(ratio.when) and ratio.minimum is not None:
-            yield Box(*ratio.h_deg, *ratio.v_deg)
+    for own in (own for own in entry.maximum if rule.holds(own.when)):
+        if not own.optional and own.where == "everywhere":
+            yield from maximum_boxes(own, rule.side)
+    for own in (own for own in entry.zone if rule.holds(own.when)):
+        h, v = zip(*own.polygon_deg, strict=True)
+        yield Box(min(h), max(h), min(v), max(v))
+    for own in (own for own in entry.field if rule.holds(own.when)):
+        yield from visibility_boxes(own, rule).boxes
+    for own in (own for own in entry.ratio if rule.holds(own.when)):
+        if own.minimum is not None:
+            yield Box(*own.h_deg, *own.v_deg)

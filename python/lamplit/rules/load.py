@@ -21,7 +21,7 @@ _FOLDER = Path(__file__).parent / "library"
 
 def rule_set_names() -> tuple[str, ...]:
     """Return the names of the rule sets that come with Lamplit, sorted."""
-    return tuple(sorted(path.stem for path in _FOLDER.glob("*.toml")))
+    return tuple(sorted(path.stem for path in _FOLDER.glob("*.toml") if path.stem != "colours"))
 
 
 def load_rules(name: str | Path, *, root: Path | None = None) -> RuleSet:

@@ -27,7 +27,8 @@ Percent: TypeAlias = Annotated[float, Field(allow_inf_nan=False, ge=0.0, le=100.
 Span: TypeAlias = Annotated[tuple[Angle, Angle], Field(strict=False)]
 Pair: TypeAlias = Annotated[tuple[Angle, Angle], Field(strict=False)]
 When: TypeAlias = Annotated[
-    dict[str, str], Field(description="options and the choices under which this holds")
+    dict[str, str],
+    Field(default_factory=dict, description="options and the choices under which this holds"),
 ]
 
 
@@ -88,7 +89,7 @@ class Distribution(Sourced):
     significant_digits: Annotated[
         int | None, Field(ge=1, le=9, description="minima are rounded down to so many digits")
     ] = None
-    pass_rule: Literal["each", "floor", "point-or-group"] = "each"
+    rule: Literal["each", "floor", "point-or-group"] = "each"
     floor_percent: Percent | None = None
     groups: Annotated[Text | None, Field(description="name of a grouping")] = None
     sums_cd: Annotated[NumbersChoice | None, Field(description="one minimum a group")] = None
@@ -100,16 +101,16 @@ class Distribution(Sourced):
     below_that: Annotated[
         Literal["left-out", "moved-up"], Field(description="what becomes of lower points")
     ] = "left-out"
-    when: When = {}
+    when: When
 
     @model_validator(mode="after")
     def _fits(self) -> Distribution:
         if (self.groups is None) != (self.sums_cd is None):
             raise ValueError("groups and sums_cd belong together")
-        if self.pass_rule != "each" and self.groups is None:
-            raise ValueError(f"pass_rule = {self.pass_rule!r} needs groups and sums_cd")
-        if (self.pass_rule == "floor") != (self.floor_percent is not None):
-            raise ValueError("floor_percent belongs to pass_rule = 'floor', and must be there")
+        if self.rule != "each" and self.groups is None:
+            raise ValueError(f"rule = {self.rule!r} needs groups and sums_cd")
+        if (self.rule == "floor") != (self.floor_percent is not None):
+            raise ValueError("floor_percent belongs to rule = 'floor', and must be there")
         return self
 
 
@@ -128,7 +129,7 @@ class Maximum(Sourced):
         NotNegative, Field(description="a brighter spot smaller than this cone is let through")
     ] = 0.0
     optional: Annotated[bool, Field(description="judged only where the grid reaches")] = False
-    when: When = {}
+    when: When
 
 
 class Zone(Sourced):
@@ -136,7 +137,7 @@ class Zone(Sourced):
 
     cd: NumberChoice
     polygon_deg: Annotated[list[Pair], Field(min_length=3, description="corners (H, V)")]
-    when: When = {}
+    when: When
 
 
 class VisibilityField(Sourced):
@@ -150,7 +151,7 @@ class VisibilityField(Sourced):
     inboard_below_deg: Annotated[
         NumberChoice | None, Field(description="inboard angle below H, where it is another")
     ] = None
-    when: When = {}
+    when: When
 
 
 class Ratio(Sourced):
@@ -162,7 +163,7 @@ class Ratio(Sourced):
     grid: Annotated[NameChoice | None, Field(description="ratios point by point")] = None
     h_deg: Span = (-90.0, 90.0)
     v_deg: Span = (-90.0, 90.0)
-    when: When = {}
+    when: When
 
     @model_validator(mode="after")
     def _has_one(self) -> Ratio:
@@ -201,13 +202,15 @@ class Entry(Table):
 
     title: Text
     colour: ColourRule | None = None
-    distribution: list[Distribution] = []
-    maximum: list[Maximum] = []
-    zone: list[Zone] = []
-    field: list[VisibilityField] = []
-    ratio: list[Ratio] = []
-    reflex: list[Reflex] = []
-    notes: Annotated[list[Text], Field(description="what this file does not judge")] = []
+    distribution: Annotated[list[Distribution], Field(default_factory=list)]
+    maximum: Annotated[list[Maximum], Field(default_factory=list)]
+    zone: Annotated[list[Zone], Field(default_factory=list)]
+    field: Annotated[list[VisibilityField], Field(default_factory=list)]
+    ratio: Annotated[list[Ratio], Field(default_factory=list)]
+    reflex: Annotated[list[Reflex], Field(default_factory=list)]
+    notes: Annotated[
+        list[Text], Field(default_factory=list, description="what this file does not judge")
+    ]
 
 
 class Production(Sourced):
@@ -215,8 +218,9 @@ class Production(Sourced):
 
     deviation_percent: Percent
     field_minima: Annotated[
-        list[Pair], Field(description="minima of visibility fields with a value of their own")
-    ] = []
+        list[Pair],
+        Field(default_factory=list, description="minima of fields with a value of their own"),
+    ]
 
 
 class Tolerance(Sourced):
@@ -258,15 +262,17 @@ class RuleFile(Table):
     lamplit_rules: Annotated[Literal[1], Field(description="version of this format: 1")]
     title: Text
     document: Annotated[Text, Field(description="the document that the values come from")]
-    notices: Annotated[list[Text], Field(description="what every verdict must say")] = []
+    notices: Annotated[
+        list[Text], Field(default_factory=list, description="what every verdict must say")
+    ]
     cell_deg: Annotated[Positive, Field(le=10.0, description="size of the cells to measure")] = 1.0
-    options: dict[str, Option] = {}
-    grids: dict[str, Grid] = {}
-    groupings: dict[str, Grouping] = {}
-    colours: dict[str, ColourRegion] = {}
+    options: Annotated[dict[str, Option], Field(default_factory=dict)]
+    grids: Annotated[dict[str, Grid], Field(default_factory=dict)]
+    groupings: Annotated[dict[str, Grouping], Field(default_factory=dict)]
+    colours: Annotated[dict[str, ColourRegion], Field(default_factory=dict)]
     production: Production | None = None
     tolerance: Tolerance | None = None
-    entries: dict[str, Entry] = {}
+    entries: Annotated[dict[str, Entry], Field(default_factory=dict)]
 
 
 @lru_cache(maxsize=1)
