@@ -78,7 +78,7 @@ class Region:
         distance, _ = _nearest(point, self.border, pieces)
         spread = np.zeros((2, 2)) if covariance is None else np.asarray(covariance, np.float64)
         factor = np.linalg.cholesky(spread + _SMALLEST_VARIANCE * np.eye(2))
-        whitened = np.linalg.solve(factor, (self.border - point).T).T
+        whitened = np.asarray(np.linalg.solve(factor, (self.border - point).T).T, np.float64)
         sigmas, at = _nearest(np.zeros(2), whitened, pieces)
         sign = 1.0 if inside else -1.0
         error = distance / sigmas if sigmas > 0.0 else float(np.sqrt(np.trace(spread)))
@@ -189,7 +189,8 @@ def _meeting(first: Edge, second: Edge) -> tuple[Array, float]:
     matrix = np.array([a[:2], b[:2]])
     if abs(float(np.linalg.det(matrix))) < 1e-12:
         raise RuleError(f"the edges {first.label!r} and {second.label!r} are parallel")
-    return np.linalg.solve(matrix, np.array([a[2], b[2]])), float("nan")
+    met = np.linalg.solve(matrix, np.array([a[2], b[2]]))
+    return np.asarray(met, dtype=np.float64), float("nan")
 
 
 def _line(edge: Edge, locus: Array) -> Array:
