@@ -54,10 +54,8 @@ def test_just_above_and_below_the_limit_is_undecided_alike() -> None:
     for axis_cd in (59.0, 60.0, 61.0):
         verdict = judge(rule, observe(rule, power_law(axis_cd, 0.0), relative_error=0.01))
         assert at_axis(verdict).outcome == "undecided"
-    assert (
-        at_axis(judge(rule, observe(rule, power_law(60.0, 0.0), relative_error=0.01))).paths_factor
-        == np.inf
-    )  # noqa: E501
+    exactly = judge(rule, observe(rule, power_law(60.0, 0.0), relative_error=0.01))
+    assert at_axis(exactly).paths_factor == np.inf
 
 
 def test_a_maximum_is_decided_by_the_brightest_cell_and_its_own_sigma() -> None:
