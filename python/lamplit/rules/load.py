@@ -67,7 +67,8 @@ def find_rule(text: str, *, root: Path | None = None) -> Rule:
     """
     path, question, tail = text.partition("?")
     name, slash, entry = path.rpartition("/")
-    options = dict(own.partition("=")[::2] for own in tail.split("&")) if question else {}
+    pairs = [own.partition("=") for own in tail.split("&")] if question else []
+    options = {key: choice for key, _, choice in pairs}
     if not slash or not name or not entry or not all(options) or not all(options.values()):
         raise RuleError(
             f"{text[:60]!r} names no rule; write it as un-r148/S1, my-rules.toml/X or "
