@@ -65,7 +65,7 @@ def plan(
     target = None if chosen == "hall" else error
     if error is None and chosen == "path" and adaptive is not False:
         target = scene.image.error
-    by_noise = target is not None if adaptive is None else adaptive
+    by_noise = (target or time_s) is not None if adaptive is None else adaptive
     most = samples
     if most is None:
         is_open = error is not None or time_s is not None or _leaves_samples_open(scene, target)

@@ -61,7 +61,7 @@ def render(
     sample down to, and ``time_s`` the seconds to trace for; with either, ``samples`` is the most
     that a pixel takes on average, and None sets no limit of its own. ``adaptive`` allots samples to
     pixels by how noisy and costly a first round found their neighbours, so that no pixel is biased
-    by its own samples.
+    by its own samples; None does so where there is an error to reach or a time to use.
 
     ``threads`` of None takes one per core; the result does not depend on it, but for how far it
     comes in ``time_s``. ``spectral_bands`` keeps each pixel's spectrum, ``layers`` a picture for
