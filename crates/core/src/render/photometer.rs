@@ -116,6 +116,11 @@ impl Photometer {
         self.batches[0].paths
     }
 
+    /// What catches it.
+    pub fn receivers(&self) -> &Receivers {
+        &self.receivers
+    }
+
     /// What sends out the light.
     pub fn source(&self) -> &LightSource {
         &self.source

@@ -197,7 +197,7 @@ impl<'a> PathWalk<'a> {
 
     /// The face at which light turns: where matter changes, unless its index is the same on all lanes.
     fn boundary(&self, here: &Interior, beyond: &Interior) -> Option<Face> {
-        let face = self.scene.interface(here, beyond)?;
+        let face = self.scene.reversible_interface(here, beyond)?;
         (self.index(here) != self.index(beyond)).then_some(face)
     }
 
