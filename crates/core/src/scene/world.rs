@@ -180,11 +180,14 @@ impl Scene {
     /// # Errors
     /// The point is inside the opaque body of the returned number.
     pub fn bodies_round(&self, point: DVec3) -> Result<Interior, BodyId> {
-        let mut seen: Vec<BodyId> = Vec::new();
-        let mut interior = Interior::OUTSIDE;
         // A direction without symmetry, so that it passes no edge of an axis-aligned model.
         let direction = DVec3::new(0.268_431, 0.713_907, 0.646_731).normalize();
         let mut ray = Ray::endless(point, direction);
+        if let Some(body) = self.opaque_round(&ray) {
+            return Err(body);
+        }
+        let mut seen: Vec<BodyId> = Vec::new();
+        let mut interior = Interior::OUTSIDE;
         while let Some(place) = self.first_place(&ray) {
             ray.origin = place.hit.point.leave_along(direction);
             for face in place.faces() {
@@ -195,17 +198,23 @@ impl Scene {
                 let is_transparent = self.material_of(face.body).dielectric().is_some();
                 if !face.is_entered && is_transparent {
                     interior = interior.cross(face.body, true).unwrap_or(interior);
-                } else if !face.is_entered && self.is_closed(face.body) {
-                    return Err(face.body);
                 }
             }
         }
         Ok(interior)
     }
 
-    /// Whether a body encloses a volume; an opaque mesh may be a sheet, and counts as one.
-    fn is_closed(&self, body: BodyId) -> bool {
-        self.primitives.iter().any(|(primitive, id)| *id == body && primitive.is_closed())
+    /// The opaque body that the ray starts in: one of those that enclose a volume. An opaque mesh may
+    /// be a sheet, and counts as one.
+    fn opaque_round(&self, ray: &Ray) -> Option<BodyId> {
+        let leaves = |primitive: &Primitive| {
+            let met = primitive.closest_hit(ray);
+            met.is_some_and(|point| point.normal.dot(ray.direction) > 0.0)
+        };
+        let mut closed = self.primitives.iter().filter(|(primitive, body)| {
+            primitive.is_closed() && self.material_of(*body).dielectric().is_none()
+        });
+        closed.find(|(primitive, _)| leaves(primitive)).map(|(_, body)| *body)
     }
 
     /// The box round all bodies but endless planes; `None` without any.
