@@ -97,8 +97,10 @@ def finding(got: float, error: float, required: float, sense: str = "min", **mor
         "unit": "cd",
         "margin_percent": 100.0 * inside / required,
         "outcome": outcome,
-        "paths_factor": (2 * error / inside) ** 2 if outcome == "undecided" else None,
+        "paths_factor": None,
     }
+    if outcome == "undecided":
+        usual["paths_factor"] = (2 * error / inside) ** 2 if inside else np.inf
     return Finding(**(usual | more))
 
 

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from lamplit.report.photometry.results import ColourRegion, FunctionResults
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 
 _REGION_INK = {"red": "#b3261e", "amber": "#b06a00", "white": "#6b6a66"}
 _TICKS_NM = (480, 520, 560, 580, 590, 600, 610, 620, 640, 700)
@@ -73,18 +74,18 @@ def draw_chromaticity(function: FunctionResults) -> Figure | None:
     """Draw the spots' chromaticities by the legal region; None where no light reached a spot."""
     observed = function.observed
     xy, covariance = chromaticity_covariance(observed.spot_xyz, observed.spot_xyz_covariance)
-    lit = np.isfinite(xy).all(axis=-1)
+    lit = _lit(function.observed)
     if not lit.any():
         return None
     region = function.region
-    figure = new_figure(6.4, 5.9)
-    named = "no rule names a region" if region is None else f"outlined: {region.name} of the rule"
+    figure = new_figure(4.7, 4.7)
     head(
         figure,
-        f"{shortened(observed.name, 40)}: colour at the test points",
-        f"CIE 1931 x, y; ellipses hold 2 σ (86 %); {named}{_on_axis(observed, xy)}",
+        f"{shortened(observed.name, 24)}: colour at the test points",
+        f"CIE 1931 x, y; ellipses: 2 σ (86 %)"
+        f"{'' if region is None else f'; outlined: {region.name}, as allowed'}",
     )
-    axes = figure.add_axes((0.12, 0.10, 0.84, 0.76))
+    axes = figure.add_axes((0.135, 0.105, 0.845, 0.755))
     dress(axes, x="x", y="y")
     _window(axes, xy[lit], region)
     _draw_locus(axes)
@@ -97,16 +98,21 @@ def draw_chromaticity(function: FunctionResults) -> Figure | None:
     return figure
 
 
+def _lit(observed: Observed) -> Flags:
+    """Return which spots any light reached, (p,)."""
+    return np.asarray(observed.spot_xyz.sum(axis=-1) > 0.0)
+
+
 def _draw_close_view(axes: Axes, function: FunctionResults, xy: Array, covariance: Array) -> None:
     """Draw the points once more, as large as fits, where no colour is: to the upper right."""
-    lit = np.isfinite(xy).all(axis=-1)
+    lit = _lit(function.observed)
     reach = 2.0 * np.sqrt(np.maximum(np.diagonal(covariance[lit], axis1=-2, axis2=-1), 0.0))
     low, high = (xy[lit] - reach).min(axis=0), (xy[lit] + reach).max(axis=0)
     half = max(0.6 * float((high - low).max()), 5e-5)
     if half > 0.3 * float(np.ptp(axes.get_xlim())):
         _name_some(axes, function.observed, xy, lit)
         return
-    close = axes.inset_axes((0.60, 0.60, 0.39, 0.39))
+    close = axes.inset_axes((0.57, 0.58, 0.42, 0.41))
     close.set_facecolor(PAPER)
     for spine in close.spines.values():
         spine.set(color=QUIET, linewidth=0.8)
@@ -125,23 +131,17 @@ def _draw_close_view(axes: Axes, function: FunctionResults, xy: Array, covarianc
     axes.indicate_inset_zoom(close, edgecolor=QUIET, alpha=0.8, linewidth=0.7)
 
 
-def _on_axis(observed: Observed, xy: Array) -> str:
-    at = np.flatnonzero((observed.spot_h_deg == 0.0) & (observed.spot_v_deg == 0.0))
-    lit = [place for place in at if np.isfinite(xy[place]).all()]
-    return f"; HV: {xy[lit[0], 0]:.4f}, {xy[lit[0], 1]:.4f}" if lit else ""
-
-
 def _window(axes: Axes, xy: Array, region: ColourRegion | None) -> None:
     """Set the limits to a square round the region and the points, wider where the axes are."""
     every = xy if region is None else np.concatenate([xy, region.outline_xy])
     middle = 0.5 * (every.min(axis=0) + every.max(axis=0))
     half = max(0.58 * float(np.ptp(every, axis=0).max()), 0.012)
     x, y = ((float(at - half), float(at + half)) for at in middle)
-    width, height = axes.figure.get_size_inches() * axes.get_position().size
-    stretch = half * (width / height - 1.0)
+    box = axes.get_window_extent()
+    stretch = half * (box.width / box.height - 1.0)
     x = (x[0] - stretch, x[1] + stretch)
     axes.set(xlim=x, ylim=y, aspect="equal")
-    axes.locator_params(nbins=6)
+    axes.locator_params(nbins=5)
 
 
 def _draw_locus(axes: Axes) -> None:
@@ -181,7 +181,7 @@ def _draw_ellipse(axes: Axes, xy: Array, covariance: Array) -> None:
     axes.plot(*xy, "o", ms=2.4, color=INK, zorder=4)
 
 
-def _name_some(axes: Axes, observed: Observed, xy: Array, lit: NDArray[np.bool_]) -> None:
+def _name_some(axes: Axes, observed: Observed, xy: Array, lit: Flags) -> None:
     """Name the spot on the axis and the one whose colour is farthest from it."""
     on_axis = lit & (observed.spot_h_deg == 0.0) & (observed.spot_v_deg == 0.0)
     start = int(np.argmax(on_axis)) if on_axis.any() else int(np.argmax(lit))

@@ -101,8 +101,8 @@ def draw_isocandela(function: FunctionResults) -> Figure:
         xlim=(h_edges[0] - pad_h, h_edges[-1] + pad_h),
         ylim=(v_edges[0] - 3 * pad_v, v_edges[-1] + 3 * pad_v),
     )
-    for draw_axis in (axes.axhline, axes.axvline):
-        draw_axis(0.0, color=QUIET, linewidth=0.6)
+    axes.axhline(0.0, color=QUIET, linewidth=0.6)
+    axes.axvline(0.0, color=QUIET, linewidth=0.6)
     _draw_lines(axes, observed, peak)
     _draw_field(axes, function)
     outcomes = _draw_points(axes, function)
@@ -129,7 +129,7 @@ def _draw_lines(axes: Axes, observed: Observed, peak: float) -> None:
         *where, observed.grid_cd, levels=levels, cmap=ramp, norm=norm, linewidths=1.1
     )
     edge = [withStroke(linewidth=2.4, foreground=PAPER)]
-    for level, (x, y) in label_places(lines.levels, lines.allsegs):
+    for level, (x, y) in label_places(levels, lines.allsegs):
         axes.text(x, y, f"{level:g}", fontsize=7.5, color=INK, ha="center", va="center",
                   path_effects=edge, family=FONT, zorder=3.5, clip_on=True)  # fmt: skip
 

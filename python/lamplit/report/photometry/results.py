@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -127,18 +127,30 @@ class Results:
     @property
     def outcome(self) -> Outcome | None:
         """The worst of all functions' outcomes; None where no function has a rule."""
-        found = [one.verdict.outcome for one in self.functions if one.verdict is not None]
-        return min(found, key=OUTCOMES.index) if found else None
+        found: list[Outcome] = [
+            one.verdict.outcome for one in self.functions if one.verdict is not None
+        ]
+        return worst(found) if found else None
 
 
-def worst_finding(verdict: Verdict) -> Finding:
+def worst(outcomes: Iterable[Outcome]) -> Outcome:
+    """Return the worst of ``outcomes``, of which there must be one.
+
+    >>> worst(["pass", "undecided"])
+    'undecided'
+    """
+    found = set(outcomes)
+    return next(outcome for outcome in OUTCOMES if outcome in found)
+
+
+def worst_finding(findings: Iterable[Finding]) -> Finding:
     """Return the finding that decides: of the worst outcome, the one with the least margin."""
 
     def badness(finding: Finding) -> tuple[int, float]:
         margin = finding.margin_percent
         return OUTCOMES.index(finding.outcome), np.inf if margin is None else margin
 
-    return min(verdict.findings, key=badness)
+    return min(findings, key=badness)
 
 
 def tally(verdict: Verdict) -> dict[Outcome, int]:

@@ -44,14 +44,13 @@ def draw_solid(function: FunctionResults) -> Figure | None:
     h_peak, v_peak, peak = brightest(observed)
     if not peak > 0.0 or min(observed.grid_cd.shape) < 2:
         return None
-    figure = new_figure(6.4, 4.1)
+    figure = new_figure(4.7, 3.5)
     head(
         figure,
-        f"{shortened(observed.name, 40)}: solid of intensity",
-        f"distance from the lamp in cd; brightest {cd(peak)} cd at H {angle(h_peak)}°, "
-        f"V {angle(v_peak)}°",
+        f"{shortened(observed.name, 24)}: solid of intensity",
+        f"distance: cd; brightest {cd(peak)} cd at H {angle(h_peak)}°, V {angle(v_peak)}°",
     )
-    axes: Any = figure.add_axes((0.0, -0.04, 1.0, 0.94), projection="3d", computed_zorder=False)
+    axes: Any = figure.add_axes((0.0, -0.08, 1.0, 0.98), projection="3d", computed_zorder=False)
     axes.set_axis_off()
     corners = solid_points(observed)
     step_v, step_h = (-(-size // _MOST_LINES) for size in observed.grid_cd.shape)

@@ -107,13 +107,13 @@ def outcome_legend(
     """Say below ``axes``, at a place in their own 0 to 1, which sign stands for which outcome."""
     from matplotlib.lines import Line2D
 
-    shown = [name for name in MARKS if name in outcomes]
+    shown = [mark for name, mark in MARKS.items() if name in outcomes]
     handles = [
         Line2D(
-            [], [], linestyle="none", marker=MARKS[name].marker, color=MARKS[name].ink,
-            markersize=5, label=MARKS[name].word,
+            [], [], linestyle="none", marker=mark.marker, color=mark.ink,
+            markersize=5, label=mark.word,
         )
-        for name in shown
+        for mark in shown
     ]  # fmt: skip
     if not handles:
         return

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lamplit.report.photometry.results import OUTCOMES, worst_finding
+from lamplit.report.photometry.results import worst, worst_finding
 from lamplit.report.photometry.style import MARKS, cd
 
 if TYPE_CHECKING:
@@ -33,17 +33,12 @@ class Point:
     @property
     def outcome(self) -> Outcome:
         """The worst of what is found there."""
-        return min((finding.outcome for finding in self.findings), key=OUTCOMES.index)
+        return worst(finding.outcome for finding in self.findings)
 
     @property
     def deciding(self) -> Finding:
         """The finding with the worst outcome and, of these, the least margin."""
-
-        def badness(finding: Finding) -> tuple[int, float]:
-            margin = finding.margin_percent
-            return OUTCOMES.index(finding.outcome), np.inf if margin is None else margin
-
-        return min(self.findings, key=badness)
+        return worst_finding(self.findings)
 
 
 def at_points(verdict: Verdict, observed: Observed) -> dict[tuple[float, float], list[Finding]]:
@@ -118,8 +113,8 @@ def margin(finding: Finding) -> str:
 
     A margin below a tenth of a percent is given to its first digit, lest it reads as none.
     """
-    if finding.margin_percent is None:
-        return ""
+    if not finding.margin_percent:
+        return "" if finding.margin_percent is None else "0 %"
     digits = ".1f" if abs(finding.margin_percent) < 9.95 else ".0f"
     if 0.0 < abs(finding.margin_percent) < 0.05:
         digits = ".1g"
@@ -143,7 +138,7 @@ def more_paths(finding: Finding) -> str:
 
 def in_words(verdict: Verdict) -> str:
     """Return the finding that decides in one sentence."""
-    finding = worst_finding(verdict)
+    finding = worst_finding(verdict.findings)
     where = place(finding)
     words = (
         f"{finding.requirement}{f' ({where})' if where and where != finding.requirement else ''}"

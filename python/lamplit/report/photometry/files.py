@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: Apache-2.0 OR MIT
+"""All files of a measurement, in a folder."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from lamplit.report.atomic import prepare_output, write_bytes
+from lamplit.report.photometry.csv_files import candela_csv, points_csv, spots_csv
+from lamplit.report.photometry.kept import CANDELA_FILE, MEASUREMENT_FILE, measurement_json
+from lamplit.report.photometry.plots import KINDS, draw_plots
+
+if TYPE_CHECKING:
+    from lamplit.report.photometry.results import Results
+
+POINTS_FILE, SPOTS_FILE = "points.csv", "spots.csv"
+
+
+def write_measurement(results: Results, directory: Path) -> dict[str, str]:
+    """Write the tables, plots and numbers of ``results``; return the files and what is in each.
+
+    ``measurement.json`` is written last, so that a folder which has one is complete.
+
+    Raises:
+        OutputError: The folder or a file in it cannot be written.
+    """
+    prepare_output(directory, (POINTS_FILE, SPOTS_FILE, CANDELA_FILE, MEASUREMENT_FILE))
+    written: dict[str, str] = {}
+    if results.outcome is not None:
+        write_bytes(directory / POINTS_FILE, points_csv(results))
+        written[POINTS_FILE] = "every requirement: required, got, standard error, outcome"
+    write_bytes(directory / SPOTS_FILE, spots_csv(results))
+    written[SPOTS_FILE] = "intensity and chromaticity in the directions of the test points"
+    write_bytes(directory / CANDELA_FILE, candela_csv(results))
+    written[CANDELA_FILE] = "intensity over the grid of H and V"
+    for plot in draw_plots(results):
+        write_bytes(directory / plot.file, plot.content)
+        written[plot.file] = KINDS[plot.kind]
+    write_bytes(directory / MEASUREMENT_FILE, measurement_json(results))
+    written[MEASUREMENT_FILE] = "all numbers, and what makes them again"
+    return written
