@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0 OR MIT
-"""Writes small IES and EULUMDAT files from any function of direction."""
+"""Writes small IES, EULUMDAT and ray files, apart from the code that reads and writes them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import struct
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -100,6 +101,110 @@ def ldt_text(
     return "\r\n".join([*head, *map(repr, [*c.tolist(), *g.tolist(), *table.ravel().tolist()]), ""])
 
 
+NAN = float("nan")
+
+#: x, y, z, direction cosines, flux.
+RAYS = (
+    (1.0, 2.0, 3.0, 0.0, 0.0, 1.0, 0.5),
+    (-1.0, 0.25, 0.0, 0.6, 0.0, 0.8, 1.5),
+    (0.0, 0.0, -4.0, 0.0, -1.0, 0.0, 2.0),
+)
+
+
+def tm25_bytes(
+    rays: Sequence[Sequence[float]] = RAYS,
+    *,
+    magic: bytes = b"TM25",
+    version: int = 2013,
+    lumens: float = NAN,
+    watts: float = 4.0,
+    count: int | None = None,
+    kind: int = 0,
+    wavelength: float = NAN,
+    flags: Sequence[int] = (1, 1, 1, 0, 0, 0, 0, 0),
+    tables: Sequence[Sequence[tuple[float, float]]] = (),
+    table_count: int | None = None,
+    added: Sequence[str] = (),
+    added_count: int | None = None,
+    text: bytes = b"",
+    text_bytes: int | None = None,
+    padding: int | None = None,
+) -> bytes:
+    """Return a TM-25 file; what is not given is sound."""
+    content = magic
+    content += struct.pack("<i", version)
+    content += struct.pack("<i", 0)  # creation method
+    content += struct.pack("<f", lumens)
+    content += struct.pack("<f", watts)
+    content += struct.pack("<Q", len(rays) if count is None else count)
+    content += b"2026-01-02T03:04:05+01:00".ljust(28, b"\0")
+    content += struct.pack("<i", 0)  # start position
+    content += struct.pack("<i", kind)
+    content += struct.pack("<f", wavelength)
+    content += struct.pack("<f", NAN) + struct.pack("<f", NAN)  # shortest, longest
+    content += struct.pack("<i", len(tables) if table_count is None else table_count)
+    content += struct.pack("<i", len(added) if added_count is None else added_count)
+    content += struct.pack("<i", len(text) if text_bytes is None else text_bytes)
+    content += bytes(168)
+    assert len(content) == 256
+    for flag in flags:
+        content += struct.pack("<i", flag)
+    assert len(content) == 288
+    content += "Red LED λ".encode("utf-32-le").ljust(4000, b"\0") + bytes(8 * 4000)
+    assert len(content) == 36288
+    spectra = b""
+    for table in tables:
+        spectra += struct.pack("<i", len(table))
+        for nm, weight in table:
+            spectra += struct.pack("<f", nm) + struct.pack("<f", weight)
+    spectra += bytes((32 - len(spectra) % 32) % 32 if padding is None else padding)
+    content += spectra
+    for name in added:
+        content += name.encode("utf-32-le").ljust(512, b"\0")
+    content += text
+    for ray in rays:
+        for number in ray:
+            content += struct.pack("<f", number)
+    return content
+
+
+def zemax_bytes(
+    rays: Sequence[Sequence[float]] = RAYS,
+    *,
+    identifier: int = 1010,
+    count: int | None = None,
+    ray_set_flux: float = 4.0,
+    wavelength: float = 0.55,
+    unit: int = 4,
+    ray_format: int = 0,
+    flux_type: int = 1,
+) -> bytes:
+    """Return a binary source file of Zemax; what is not given is sound."""
+    content = struct.pack("<i", identifier)
+    content += struct.pack("<I", len(rays) if count is None else count)
+    content += b"Amber LED".ljust(100, b"\0")
+    content += struct.pack("<f", 9.0)  # SourceFlux
+    content += struct.pack("<f", ray_set_flux)
+    content += struct.pack("<f", wavelength)
+    content += struct.pack("<f", 0.0) + struct.pack("<f", 180.0)  # inclination
+    content += struct.pack("<f", 0.0) + struct.pack("<f", 360.0)  # azimuth
+    assert len(content) == 136
+    content += struct.pack("<i", unit)
+    content += struct.pack("<3f", 7.0, 8.0, 9.0)  # place: not used
+    content += struct.pack("<3f", 1.0, 1.0, 1.0)  # rotation: not used
+    content += struct.pack("<3f", 2.0, 2.0, 2.0)  # scale: not used
+    content += struct.pack("<4f", 0.0, 0.0, 0.0, 0.0)
+    assert len(content) == 192
+    content += struct.pack("<i", ray_format)
+    content += struct.pack("<i", flux_type)
+    content += struct.pack("<2i", 0, 0)
+    assert len(content) == 208
+    for ray in rays:
+        for number in ray:
+            content += struct.pack("<f", number)
+    return content
+
+
 @pytest.fixture
 def goniometer() -> Callable[..., np.ndarray]:
     """Give `direction`."""
@@ -116,6 +221,18 @@ def ies() -> Callable[..., str]:
 def ldt() -> Callable[..., str]:
     """Give `ldt_text`."""
     return ldt_text
+
+
+@pytest.fixture
+def tm25() -> Callable[..., bytes]:
+    """Give `tm25_bytes`."""
+    return tm25_bytes
+
+
+@pytest.fixture
+def zemax() -> Callable[..., bytes]:
+    """Give `zemax_bytes`."""
+    return zemax_bytes
 
 
 @pytest.fixture

@@ -30,7 +30,7 @@ def test_a_failing_disk_leaves_the_old_file_intact(
     def fail(*_: object, **__: object) -> None:
         raise OSError(code, os.strerror(code))
 
-    monkeypatch.setattr(f"lamplit.report.atomic.os.{call}", fail)
+    monkeypatch.setattr(f"lamplit.atomic.os.{call}", fail)
     with pytest.raises(OutputError, match=os.strerror(code).lower()):
         write_bytes(path, b"new")
     monkeypatch.undo()
