@@ -40,6 +40,10 @@ class GeometryError(LamplitError):
     """A mesh or a primitive cannot be used as it stands."""
 
 
+class RuleError(LamplitError):
+    """A rule file cannot be used, or a rule is asked for what it does not hold."""
+
+
 class OutputError(LamplitError):
     """A result cannot be written where it was asked for."""
 

@@ -21,8 +21,8 @@ PYTHON_ROOMS["lamps"] = {"base"}
 PYTHON_ROOMS["photometry"] = {"base"}
 PYTHON_ROOMS["scene"] = {"base", "sources", "colour", "materials", "photometry"}
 PYTHON_ROOMS["engine"] = PYTHON_ROOMS["scene"] | {"scene", "_core"}
-PYTHON_ROOMS["rules"] = PYTHON_ROOMS["engine"] - {"_core"} | {"engine"}
-PYTHON_ROOMS["report"] = PYTHON_ROOMS["rules"] | {"rules"}
+PYTHON_ROOMS["rules"] = {"base", "sources", "colour", "photometry"}
+PYTHON_ROOMS["report"] = PYTHON_ROOMS["engine"] - {"_core"} | {"engine", "rules"}
 PYTHON_ROOMS["cli"] = PYTHON_ROOMS["report"] | {"report", "lamps"}
 
 #: What each module of the core may import besides itself.

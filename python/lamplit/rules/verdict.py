@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -10,6 +11,16 @@ from typing import Literal
 Outcome = Literal["pass", "fail", "undecided"]
 
 _WORST_FIRST: tuple[Outcome, ...] = ("fail", "undecided", "pass")
+
+
+def worst(outcomes: Sequence[Outcome]) -> Outcome:
+    """Return the worst of some outcomes; "undecided" where there are none."""
+    return min(outcomes, key=_WORST_FIRST.index, default="undecided")
+
+
+def best(outcomes: Sequence[Outcome]) -> Outcome:
+    """Return the best of some outcomes; "undecided" where there are none."""
+    return max(outcomes, key=_WORST_FIRST.index, default="undecided")
 
 
 @dataclass(frozen=True)
@@ -33,7 +44,8 @@ class Finding:
     #: How far inside the limit, in percent of it; below 0 outside.
     margin_percent: float | None
     outcome: Outcome
-    #: How many times as many paths would decide it; None where it is decided.
+    #: How many times as many paths would decide it, if the estimate stays (infinite on the limit);
+    #: None where it is decided, or where paths cannot decide it.
     paths_factor: float | None = None
     #: What else there is to say, such as the chromaticity and the border next to it.
     remark: str = ""
@@ -49,12 +61,23 @@ class Verdict:
     #: Name of the function.
     function: str
     findings: tuple[Finding, ...]
+    #: What was chosen: ("sections", "1"), …
+    options: tuple[tuple[str, str], ...] = ()
+    #: Where the limits were read, and what was not judged.
+    notices: tuple[str, ...] = ()
+    #: Whether the limits are those of a lamp from the line (conformity of production).
+    production: bool = False
 
     @property
     def outcome(self) -> Outcome:
-        """Return the worst of all findings.
+        """Return the worst of all findings; "undecided" where there are none."""
+        return worst([finding.outcome for finding in self.findings])
 
-        Raises:
-            ValueError: There are none.
+    @property
+    def paths_factor(self) -> float | None:
+        """Return how many times as many paths would decide all that they can; None if decided.
+
+        Infinite where something lies exactly on its limit.
         """
-        return min((finding.outcome for finding in self.findings), key=_WORST_FIRST.index)
+        factors = [own.paths_factor for own in self.findings if own.paths_factor is not None]
+        return max(factors, default=None)

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import re
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, cast
@@ -19,17 +18,7 @@ from lamplit.scene.lighting import ImageBackground
 from lamplit.scene.models import Scene
 from lamplit.scene.objects import MeshObject
 from lamplit.scene.references import check_references
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
-
-_MOST_BYTES = 8 * 2**20
-_DEEPEST = 16
-#: Begun at the start of a word only, these look at each character a bounded number of times.
-_LONG_CHAIN = re.compile(rf"(?<![\w\"'-])(?:[\w\"'-]+[ \t]*\.[ \t]*){{{4 * _DEEPEST}}}")
-_OPEN_BRACKETS = re.compile(rf"(?:[\[{{][ \t\r\n]*){{{4 * _DEEPEST}}}")
+from lamplit.toml_files import DEEPEST, check_depth, read_toml
 
 
 def load_scene(path: str | Path, *, overrides: Mapping[str, object] | None = None) -> Scene:
@@ -44,7 +33,7 @@ def load_scene(path: str | Path, *, overrides: Mapping[str, object] | None = Non
             line with the file, the key path or line, what is wrong and what to do.
     """
     file = Path(path)
-    written = _read(file)
+    written = read_toml(file, noun="scene", error=SceneError)
     for key, value in (overrides or {}).items():
         _override(written, key, value)
     return _parsed(written, root=file.resolve().parent, path=file)
@@ -60,7 +49,7 @@ def parse_scene(mapping: Mapping[str, object], *, root: str | Path) -> Scene:
 
 
 def _parsed(written: Mapping[str, object], *, root: Path, path: Path | None) -> Scene:
-    _check_depth(written, path)
+    check_depth(written, path, noun="scene", error=SceneError)
     if "lamplit" not in written:
         raise SceneError(
             "this key is missing: a scene file begins with lamplit = 1", file=path, where="lamplit"
@@ -95,76 +84,11 @@ def _check_files(scene: Scene) -> None:
         resolve_inside(scene.root, icc, where="display.space.icc")
 
 
-def _read(file: Path) -> dict[str, Any]:
-    try:
-        if not file.is_file():
-            raise SceneError(
-                "this is not a file" if file.exists() else "this file does not exist", file=file
-            )
-        size = file.stat().st_size
-        if size > _MOST_BYTES:
-            raise SceneError(
-                f"a scene file of {size} bytes is too large; keep tables of measured values in "
-                "files of their own",
-                file=file,
-            )
-        text = file.read_bytes().decode("utf-8-sig")
-    except UnicodeDecodeError as fault:
-        raise SceneError(f"this is not UTF-8 text: {fault.reason}", file=file) from fault
-    except (OSError, ValueError) as fault:
-        raise SceneError(f"the file cannot be read: {fault}", file=file) from fault
-    if "\0" in text:
-        raise SceneError("this is not a text file", file=file)
-    if _LONG_CHAIN.search(text) or _OPEN_BRACKETS.search(text):
-        raise _too_deep(file)
-    try:
-        return tomllib.loads(text)
-    except tomllib.TOMLDecodeError as fault:
-        raise _toml_fault(fault, file) from fault
-    except RecursionError:
-        raise _too_deep(file) from None
-    except ValueError as fault:
-        raise SceneError(
-            f"a value cannot be read: {str(fault).partition(';')[0]}", file=file
-        ) from fault
-
-
-def _toml_fault(fault: Exception, file: Path) -> SceneError:
-    found = re.search(r"\(at line (\d+), column (\d+)\)", str(fault))
-    message = re.sub(r" \(at [^)]*\)", "", str(fault))[:200]
-    where = f"line {found[1]}, column {found[2]}" if found else "last line"
-    return SceneError(f"this is not sound TOML: {message}", file=file, where=where)
-
-
-def _too_deep(file: Path | None) -> SceneError:
-    return SceneError(
-        f"the scene is nested too deep; {_DEEPEST} levels are read at most", file=file
-    )
-
-
-def _check_depth(written: Mapping[str, object], file: Path | None) -> None:
-    level: list[object] = [written]
-    for _ in range(_DEEPEST):
-        level = [
-            child
-            for value in level
-            for child in (
-                cast("Mapping[str, object]", value).values()
-                if isinstance(value, Mapping)
-                else cast("list[object]", value)
-            )
-            if isinstance(child, (Mapping, list, tuple))
-        ]
-        if not level:
-            return
-    raise _too_deep(file)
-
-
 def _override(written: dict[str, Any], key: str, value: object) -> None:
     """Set ``value`` at a key path; tables on the way are made, list entries must be there."""
     parts = re.findall(r"[^.\[\]]+|\[\d+\]", key)
     plain = "".join(p if p.startswith("[") else f".{p}" for p in parts).removeprefix(".")
-    if not parts or plain != key or len(parts) > _DEEPEST or parts[0].startswith("["):
+    if not parts or plain != key or len(parts) > DEEPEST or parts[0].startswith("["):
         raise SceneError(f"{key!r} is no key path; write it like image.samples or lights[0].source")
     here: Any = written
     for part, following in zip(parts, [*parts[1:], None], strict=True):

@@ -11,12 +11,12 @@ from pydantic import BaseModel
 
 from lamplit.errors import SceneError, nearest_name
 from lamplit.materials import Material, material, material_names
-from lamplit.scene.faults import key_path
 from lamplit.scene.models import LibraryMaterial, Scene
 from lamplit.sources import source as library_source
 from lamplit.sources import source_names
 from lamplit.spectra_spec import NamedSource, SourceSpec
 from lamplit.spectrum import SpectralDistribution
+from lamplit.table_faults import key_path
 
 Keys: TypeAlias = tuple[str | int, ...]
 

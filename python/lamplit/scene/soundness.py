@@ -9,7 +9,6 @@ from typing import Literal, TypeAlias
 
 from lamplit.errors import SceneError
 from lamplit.scene.contact import Contact, find_contacts
-from lamplit.scene.faults import key_path
 from lamplit.scene.memory import MemoryEstimate, memory_estimate
 from lamplit.scene.models import Scene
 from lamplit.scene.references import values_of
@@ -19,6 +18,7 @@ from lamplit.scene.solids import Body, bodies
 from lamplit.scene.spectra import spectral_faults
 from lamplit.scene.view import view_fault
 from lamplit.spectra_spec import NamedSource
+from lamplit.table_faults import key_path
 
 Level: TypeAlias = Literal["error", "warning", "notice"]
 

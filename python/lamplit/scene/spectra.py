@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from lamplit.errors import LamplitError, SceneError, SpectrumError
 from lamplit.materials import Material
-from lamplit.scene.faults import key_path
 from lamplit.scene.models import Scene
 from lamplit.scene.references import resolve_material, resolve_source, values_of
 from lamplit.spectra_spec import AnySource
+from lamplit.table_faults import key_path
 
 _Spectrum = Callable[[NDArray[np.float64]], object]
 

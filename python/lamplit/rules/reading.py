@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: Apache-2.0 OR MIT
+"""What an `Observed` says in one direction or in cells, with an honest σ where no light arrived."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lamplit.errors import RuleError
+from lamplit.photometry.observed import Observed
+from lamplit.rules.extents import Box
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+#: Two directions closer than this are the same.
+_SAME_DEG = 0.01
+#: With no hit at all, the 95 % upper bound of a Poisson count is 3 hits: 2 σ of 1.5 hits.
+_HITS_UNSEEN = 1.5
+_DARK = "no light arrives here; σ is an upper bound"
+
+
+class Reading(NamedTuple):
+    """A luminous intensity and its standard error, in cd."""
+
+    cd: float
+    standard_error: float
+    remark: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class CellReadings:
+    """The cells of a grid: (v, h) intensities and standard errors in cd, and their middles."""
+
+    cd: Array
+    standard_error: Array
+    h_deg: Array
+    v_deg: Array
+    h_edges_deg: Array
+    v_edges_deg: Array
+
+    def inside(self, box: Box) -> Mask:
+        """Return (v, h), which cells have their middle in a range."""
+        h = (self.h_deg > box.left_deg) & (self.h_deg < box.right_deg)
+        v = (self.v_deg > box.bottom_deg) & (self.v_deg < box.top_deg)
+        return v[:, None] & h[None, :]
+
+    def covers(self, box: Box) -> bool:
+        """Return whether the grid reaches to the borders of a range."""
+        return bool(
+            self.h_edges_deg[0] <= box.left_deg + _SAME_DEG
+            and self.h_edges_deg[-1] >= box.right_deg - _SAME_DEG
+            and self.v_edges_deg[0] <= box.bottom_deg + _SAME_DEG
+            and self.v_edges_deg[-1] >= box.top_deg - _SAME_DEG
+        )
+
+    @property
+    def size_deg(self) -> float:
+        """Return the longest side of a cell."""
+        widths = np.concatenate([np.diff(self.h_edges_deg), np.diff(self.v_edges_deg)])
+        return float(widths.max())
+
+
+def _bound(squared_errors: Array, cd: Array) -> float:
+    """Return an upper bound of σ where no path arrived, from the places where some did.
+
+    n hits of a path's weight w give n·w with the variance n·w²: variance/mean tells w.
+    """
+    lit = cd > 0.0
+    total = float(cd[lit].sum())
+    return _HITS_UNSEEN * float(squared_errors[lit].sum()) / total if total > 0.0 else 0.0
+
+
+def spot_readings(observed: Observed) -> tuple[Reading, ...]:
+    """Return the reading of each spot, (p,)."""
+    cd, error = observed.spot_cd, observed.spot_standard_error_cd
+    bound = _bound(error**2, cd)
+    return tuple(
+        Reading(float(value), float(sigma))
+        if value > 0.0
+        else Reading(float(value), max(float(sigma), bound), _DARK)
+        for value, sigma in zip(cd, error, strict=True)
+    )
+
+
+def cell_readings(observed: Observed) -> CellReadings:
+    """Return the grid of ``observed``; a cell's solid angle shrinks with cos V."""
+    h_edges, v_edges = observed.grid_h_edges_deg, observed.grid_v_edges_deg
+    v = 0.5 * (v_edges[:-1] + v_edges[1:])
+    cosine = np.cos(np.radians(v))[:, None]
+    cd, error = observed.grid_cd, observed.grid_standard_error_cd
+    bound = _bound(error**2 * cosine, cd) / cosine
+    sigma = np.where(cd > 0.0, error, np.maximum(error, bound))
+    return CellReadings(cd, sigma, 0.5 * (h_edges[:-1] + h_edges[1:]), v, h_edges, v_edges)
+
+
+def spot_index(observed: Observed, h_deg: float, v_deg: float, rule: str) -> int:
+    """Return which spot stands in a direction.
+
+    Raises:
+        RuleError: None does.
+    """
+    distance = _distances(observed, h_deg, v_deg)
+    if len(distance) == 0 or distance.min() > _SAME_DEG:
+        raise RuleError(
+            f"{rule} needs the direction H {h_deg:g}, V {v_deg:g}, which was not measured; "
+            "measure all of rule.spots()"
+        )
+    return int(np.argmin(distance))
+
+
+def spots_within(observed: Observed, h_deg: float, v_deg: float, radius_deg: float) -> list[int]:
+    """Return which spots lie within ``radius_deg`` of a direction."""
+    near = _distances(observed, h_deg, v_deg) <= radius_deg + 1e-6
+    return [int(at) for at in np.flatnonzero(near)]
+
+
+def _distances(observed: Observed, h_deg: float, v_deg: float) -> Array:
+    return np.hypot(observed.spot_h_deg - h_deg, observed.spot_v_deg - v_deg)
