@@ -56,6 +56,7 @@ def test_the_worst_finding_fails_before_it_is_undecided_and_has_the_least_margin
     failed, worse = make_finding(50.0, 0.5, 60.0), make_finding(30.0, 0.5, 60.0)
     every = (passed, failed, near, worse)
     assert worst_finding(every) is worse
+    assert worst_finding(()) is None
     assert worst_finding((passed, near)) is near
 
 

@@ -87,7 +87,10 @@ class KeptVerdict(_Kept):
     outcome: Outcome
     count: dict[Outcome, int]
     decided_by: str
-    findings: list[KeptFinding] = Field(min_length=1)
+    findings: list[KeptFinding]
+    options: dict[str, str]
+    notices: list[str]
+    production: bool
 
 
 class KeptRegion(_Kept):
@@ -272,6 +275,9 @@ def _kept_verdict(verdict: Verdict) -> KeptVerdict:
         count=shown.tally(verdict),
         decided_by=in_words(verdict),
         findings=[KeptFinding(**_finite(vars(finding))) for finding in verdict.findings],
+        options=dict(verdict.options),
+        notices=list(verdict.notices),
+        production=verdict.production,
     )
 
 
@@ -317,6 +323,8 @@ def _function(one: KeptFunction, grid_xyz: Array, grid_error: Array) -> shown.Fu
         None if verdict is None else Verdict(
             rule=verdict.rule, title=verdict.title, function=one.name,
             findings=tuple(Finding(**vars(found)) for found in verdict.findings),
+            options=tuple(verdict.options.items()), notices=tuple(verdict.notices),
+            production=verdict.production,
         ),
         None if region is None else shown.ColourRegion(region.name, np.array(region.outline_xy)),
         one.field_deg,

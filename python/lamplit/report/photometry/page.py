@@ -117,19 +117,21 @@ def _function(one: FunctionResults, plots: list[Plot]) -> dict[str, Any]:
             "mark": MARKS[verdict.outcome],
             "decided_by": table.in_words(verdict),
             "tally": [(MARKS[name], count) for name, count in tally(verdict).items() if count],
-            "rows": [_row(finding) for finding in _ordered(verdict, one)],
+            "rows": [_row(finding, count) for finding, count in _ordered(verdict, one)],
+            "chosen": ", ".join(f"{name} {choice}" for name, choice in verdict.options),
         }
     return facts
 
 
-def _ordered(verdict: Verdict, one: FunctionResults) -> list[Finding]:
-    """Return the findings, those at test points first."""
+def _ordered(verdict: Verdict, one: FunctionResults) -> list[tuple[Finding, int]]:
+    """Return the findings at test points, then one of each kind of the rest, and how many."""
     points = table.points_of(verdict, one.observed)
-    at_points = [finding for point in points for finding in point.findings]
-    return [*at_points, *table.elsewhere(verdict, one.observed)]
+    at_points = [(finding, 1) for point in points for finding in point.findings]
+    return [*at_points, *table.gathered(table.elsewhere(verdict, one.observed))]
 
 
-def _row(finding: Finding) -> dict[str, Any]:
+def _row(finding: Finding, count: int) -> dict[str, Any]:
+    many = f"worst of {count} directions" if count > 1 else ""
     return {
         "mark": MARKS[finding.outcome],
         "h": "" if finding.h_deg is None else table.angle(finding.h_deg),
@@ -139,7 +141,7 @@ def _row(finding: Finding) -> dict[str, Any]:
         "required": table.required(finding),
         "margin": table.margin(finding),
         "requirement": finding.requirement,
-        "notes": [note for note in (finding.remark, table.more_paths(finding)) if note],
+        "notes": [note for note in (many, finding.remark, table.more_paths(finding)) if note],
         "clause": finding.clause,
         "trust": finding.trust,
     }

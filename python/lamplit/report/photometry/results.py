@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lamplit.photometry.observed import Observed
-from lamplit.rules.verdict import Finding, Outcome, Verdict
+from lamplit.rules.verdict import Finding, Outcome, Verdict, worst
 
 Array = NDArray[np.float64]
 
@@ -133,24 +133,22 @@ class Results:
         return worst(found) if found else None
 
 
-def worst(outcomes: Iterable[Outcome]) -> Outcome:
-    """Return the worst of ``outcomes``, of which there must be one.
+def worst_finding(findings: Iterable[Finding]) -> Finding | None:
+    """Return the finding that decides; None of no findings.
 
-    >>> worst(["pass", "undecided"])
-    'undecided'
+    It has the worst outcome and, of these, the least margin; without margins, as of colours, the
+    one that lies least inside.
     """
-    found = set(outcomes)
-    return next(outcome for outcome in OUTCOMES if outcome in found)
 
-
-def worst_finding(findings: Iterable[Finding]) -> Finding:
-    """Return the finding that decides: of the worst outcome, the one with the least margin."""
-
-    def badness(finding: Finding) -> tuple[int, float]:
+    def badness(finding: Finding) -> tuple[int, float, float]:
         margin = finding.margin_percent
-        return OUTCOMES.index(finding.outcome), np.inf if margin is None else margin
+        return (
+            OUTCOMES.index(finding.outcome),
+            float("inf") if margin is None else margin,
+            finding.got if finding.required is None else 0.0,
+        )
 
-    return min(findings, key=badness)
+    return min(findings, key=badness, default=None)
 
 
 def tally(verdict: Verdict) -> dict[Outcome, int]:

@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lamplit.report.photometry.results import worst, worst_finding
+from lamplit.report.photometry.results import worst_finding
 from lamplit.report.photometry.style import MARKS, cd
 
 if TYPE_CHECKING:
@@ -19,7 +20,9 @@ if TYPE_CHECKING:
     from lamplit.rules.verdict import Finding, Outcome, Verdict
 
 #: A finding belongs to a spot that is no farther away than this, in degrees.
-_SAME_PLACE_DEG = 1e-6
+_SAME_PLACE_DEG = 0.01
+#: What a test point is about; ratios and colours are told apart from it.
+_INTENSITIES = ("cd", "mcd/lx")
 
 
 @dataclass(frozen=True)
@@ -33,20 +36,20 @@ class Point:
     @property
     def outcome(self) -> Outcome:
         """The worst of what is found there."""
-        return worst(finding.outcome for finding in self.findings)
+        return self.deciding.outcome
 
     @property
     def deciding(self) -> Finding:
         """The finding with the worst outcome and, of these, the least margin."""
-        return worst_finding(self.findings)
+        return worst_finding(self.findings) or self.findings[0]
 
 
 def at_points(verdict: Verdict, observed: Observed) -> dict[tuple[float, float], list[Finding]]:
-    """Return the findings with a limit in numbers that stand at a measured spot, by H and V."""
+    """Return the findings on intensity that stand at a measured spot, by H and V."""
     found: dict[tuple[float, float], list[Finding]] = {}
     for finding in verdict.findings:
         place = spot_of(finding, observed)
-        if place is not None and finding.required is not None:
+        if place is not None and finding.required is not None and finding.unit in _INTENSITIES:
             found.setdefault(place, []).append(finding)
     return found
 
@@ -62,6 +65,17 @@ def elsewhere(verdict: Verdict, observed: Observed) -> list[Finding]:
     """Return what stands at no test point: sums, maxima in the field, ratios, colour."""
     here = {id(finding) for some in at_points(verdict, observed).values() for finding in some}
     return [finding for finding in verdict.findings if id(finding) not in here]
+
+
+def gathered(findings: Iterable[Finding]) -> list[tuple[Finding, int]]:
+    """Return one finding for each requirement, the worst, and how many there are of it.
+
+    Nineteen directions have one colour to keep: the one nearest to the border tells of all.
+    """
+    by_requirement: dict[tuple[str, str], list[Finding]] = {}
+    for finding in findings:
+        by_requirement.setdefault((finding.requirement, finding.unit), []).append(finding)
+    return [(worst_finding(some) or some[0], len(some)) for some in by_requirement.values()]
 
 
 def spot_of(finding: Finding, observed: Observed) -> tuple[float, float] | None:
@@ -98,13 +112,18 @@ def required(finding: Finding) -> str:
     if finding.required is None:
         return ""
     sign = {"min": "≥ ", "max": "≤ ", None: ""}[finding.sense]
-    return f"{sign}{finding.required:.4g} {finding.unit}".strip()
+    unit = "" if finding.unit == "1" else finding.unit
+    return f"{sign}{finding.required:.4g} {unit}".strip()
 
 
 def got(finding: Finding) -> str:
     """Return what was measured, with its unit where it has one."""
     if finding.required is None and not finding.unit:
         return ""
+    if finding.unit == "xy":
+        return f"{finding.got:.4f} xy".replace("-", "−")
+    if finding.unit == "1":
+        return f"{finding.got:.3g}"
     return f"{cd(finding.got)} {finding.unit}".strip()
 
 
@@ -139,6 +158,8 @@ def more_paths(finding: Finding) -> str:
 def in_words(verdict: Verdict) -> str:
     """Return the finding that decides in one sentence."""
     finding = worst_finding(verdict.findings)
+    if finding is None:
+        return "nothing is required"
     where = place(finding)
     words = (
         f"{finding.requirement}{f' ({where})' if where and where != finding.requirement else ''}"
@@ -167,9 +188,11 @@ def findings_table(function: FunctionResults) -> Table:
         return table
     points = points_of(verdict, function.observed)
     ordered = [finding for point in points for finding in point.findings]
-    for finding in [*ordered, *elsewhere(verdict, function.observed)]:
+    others = gathered(elsewhere(verdict, function.observed))
+    for finding, count in [*((finding, 1) for finding in ordered), *others]:
         mark = MARKS[finding.outcome]
-        notes = [finding.requirement, finding.remark, more_paths(finding)]
+        many = f"worst of {count} directions" if count > 1 else ""
+        notes = [finding.requirement, many, finding.remark, more_paths(finding)]
         table.add_row(
             "" if finding.h_deg is None else angle(finding.h_deg),
             "" if finding.v_deg is None else angle(finding.v_deg),
