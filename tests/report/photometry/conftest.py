@@ -156,7 +156,7 @@ def results(**changes: Any) -> Results:
     red = 0.4 / (1.0 + np.exp(-(nm - 612.0) / 9.0))
     on_axis = Spectrum("light at HV", nm, red, "W/(sr nm)")
     region = ColourRegion("red", signal_region("red"))
-    field = (-45.0, 45.0, -15.0, 15.0)
+    field = ((-45.0, 45.0, -15.0, 15.0),)
     stop = observed(peak_cd=changes.pop("peak_cd", 66.0))
     tail = observed(name="position", peak_cd=7.1, noise=9)
     functions = (

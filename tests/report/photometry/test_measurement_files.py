@@ -96,7 +96,7 @@ def test_what_is_written_reads_back_the_same(
         assert getattr(after, name) == getattr(before, name), name
     for old, new in zip(before.functions, after.functions, strict=True):
         assert new.verdict == old.verdict
-        assert new.field_deg == old.field_deg
+        assert new.fields_deg == old.fields_deg
         for name, array in vars(old.observed).items():
             assert np.array_equal(getattr(new.observed, name), array), name
 

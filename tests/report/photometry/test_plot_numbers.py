@@ -14,7 +14,13 @@ from lamplit.photometry.observed import Observed
 from lamplit.report.photometry.colour import chromaticity_covariance, ellipse_of
 from lamplit.report.photometry.cuts import cut_along_h, cut_along_v, suits_logarithm
 from lamplit.report.photometry.energy import bands_of, grouped
-from lamplit.report.photometry.isocandela import brightest, contour_levels, label_places
+from lamplit.report.photometry.isocandela import (
+    brightest,
+    clear_levels,
+    contour_levels,
+    label_places,
+    window,
+)
 from lamplit.report.photometry.results import EnergyFlow, FunctionResults
 from lamplit.report.photometry.solid import solid_points
 from lamplit.rules.verdict import Verdict
@@ -43,6 +49,24 @@ def test_a_speck_of_noise_gets_no_label() -> None:
     ((level, place),) = label_places([5.0, 9.0], [[ring, speck], []])
     assert level == 5.0
     assert np.hypot(*place) == pytest.approx(8.0)
+
+
+def test_a_line_that_noise_would_scatter_is_left_out() -> None:
+    cd = np.array([[100.0, 10.0, 1.0]])
+    errors = np.array([[1.0, 1.0, 0.5]])
+    assert clear_levels([1.0, 10.0, 100.0, 500.0], cd, errors) == [10.0, 100.0]
+
+
+def test_the_window_holds_spots_fields_and_all_that_is_bright(
+    make_observed: Callable[..., Observed],
+) -> None:
+    seen = plane(np.arange(-90.0, 91.0), np.arange(-90.0, 91.0), make_observed)
+    lit = np.zeros_like(seen.grid_xyz)
+    lit[100:102, 120:125] = 50.0
+    seen = replace(seen, grid_xyz=lit)
+    assert window(FunctionResults(seen)) == (-20.0, 35.0, -10.0, 12.0)
+    field = ((-45.0, 80.0, -15.0, 15.0),)
+    assert window(FunctionResults(seen, fields_deg=field)) == (-45.0, 80.0, -15.0, 15.0)
 
 
 def plane(h_edges: np.ndarray, v_edges: np.ndarray, make: Callable[..., Observed]) -> Observed:

@@ -31,7 +31,9 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-_REGION_INK = {"red": "#b3261e", "amber": "#b06a00", "white": "#6b6a66"}
+_REGION_INK = {"red": "#b3261e", "amber": "#b06a00", "yellow": "#b06a00", "white": "#6b6a66"}
+#: Where the close view stands, in the axes' own 0 to 1: left, bottom, width, height.
+_CLOSE_VIEW = (0.57, 0.58, 0.42, 0.41)
 _TICKS_NM = (480, 520, 560, 580, 590, 600, 610, 620, 640, 700)
 
 
@@ -88,7 +90,7 @@ def draw_chromaticity(function: FunctionResults) -> Figure | None:
     axes = figure.add_axes((0.135, 0.105, 0.845, 0.755))
     dress(axes, x="x", y="y")
     _window(axes, xy[lit], region)
-    _draw_locus(axes)
+    _draw_locus(axes, covered=(_CLOSE_VIEW[0] - 0.16, _CLOSE_VIEW[1] - 0.08))
     if region is not None:
         _draw_region(axes, region)
     for place in np.flatnonzero(lit):
@@ -112,7 +114,7 @@ def _draw_close_view(axes: Axes, function: FunctionResults, xy: Array, covarianc
     if half > 0.3 * float(np.ptp(axes.get_xlim())):
         _name_some(axes, function.observed, xy, lit)
         return
-    close = axes.inset_axes((0.57, 0.58, 0.42, 0.41))
+    close = axes.inset_axes(_CLOSE_VIEW)
     close.set_facecolor(PAPER)
     for spine in close.spines.values():
         spine.set(color=QUIET, linewidth=0.8)
@@ -144,8 +146,11 @@ def _window(axes: Axes, xy: Array, region: ColourRegion | None) -> None:
     axes.locator_params(nbins=5)
 
 
-def _draw_locus(axes: Axes) -> None:
-    """Draw the spectral locus and the purple line, with wavelengths where they are in sight."""
+def _draw_locus(axes: Axes, covered: tuple[float, float] = (1.0, 1.0)) -> None:
+    """Draw the spectral locus and the purple line, with wavelengths where they are in sight.
+
+    What lies to the upper right of ``covered``, in the axes' own 0 to 1, gets no wavelength.
+    """
     from lamplit.colour.locus import spectral_locus
 
     nm, locus = spectral_locus("cie-1931-2")
@@ -153,17 +158,24 @@ def _draw_locus(axes: Axes) -> None:
     axes.plot(*np.concatenate([locus, locus[:1]]).T, color=QUIET, linewidth=1.0)
     for at in np.flatnonzero(np.isin(nm, _TICKS_NM)):
         x, y = locus[at]
-        if left < x < right and low < y < high:
+        hidden = x > left + covered[0] * (right - left) and y > low + covered[1] * (high - low)
+        if left < x < right and low < y < high and not hidden:
             axes.plot(x, y, "o", ms=2.4, color=QUIET)
             axes.annotate(f"{nm[at]:g} nm", (x, y), (4, 3), textcoords="offset points",
                           color=QUIET, fontsize=7, family=FONT, annotation_clip=True)  # fmt: skip
     axes.set(xlim=(left, right), ylim=(low, high))
 
 
+def _region_ink(region: ColourRegion) -> str:
+    """Return the ink of a region by the colour that its name has in it."""
+    words = region.name.lower()
+    return next((ink for name, ink in _REGION_INK.items() if name in words), INK)
+
+
 def _draw_region(axes: Axes, region: ColourRegion) -> None:
     from matplotlib.patches import Polygon
 
-    ink = _REGION_INK.get(region.name, INK)
+    ink = _region_ink(region)
     shape = Polygon(region.outline_xy, facecolor=ink + "14", edgecolor=ink, linewidth=1.3)
     axes.add_patch(shape)
 
@@ -209,7 +221,7 @@ def _draw_overview(axes: Axes, region: ColourRegion | None) -> None:
     small.set_axis_off()
     small.add_patch(Polygon(locus, facecolor=PAPER, edgecolor=QUIET, linewidth=0.8))
     if region is not None:
-        ink = _REGION_INK.get(region.name, INK)
+        ink = _region_ink(region)
         small.add_patch(Polygon(region.outline_xy, facecolor=ink, edgecolor="none"))
     (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
     frame = Rectangle((left, low), right - left, high - low, fill=False, edgecolor=INK)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lamplit.report.photometry.isocandela import middles
+from lamplit.report.photometry.isocandela import middles, window
 from lamplit.report.photometry.style import (
     ACCENT,
     INK,
@@ -119,7 +119,7 @@ def draw_cuts(function: FunctionResults, *, logarithmic: bool | None = None) -> 
         dress(axes, x=f"{name} in ° at {other}", y="intensity in cd" if place == 0 else "")
         _draw_cut(axes, cut)
         _draw_limits(axes, function, along_h=name == "H")
-        axes.set_xlim(float(cut.angles_deg[0]), float(cut.angles_deg[-1]))
+        axes.set_xlim(*(window(function)[:2] if name == "H" else window(function)[2:]))
         drawn.append(axes)
     _scale(drawn, function, log=log)
     return figure
@@ -143,7 +143,8 @@ def _draw_limits(axes: Axes, function: FunctionResults, *, along_h: bool) -> Non
     )  # fmt: skip
     if verdict is None:
         return
-    span = float(np.ptp(observed.grid_h_edges_deg if along_h else observed.grid_v_edges_deg))
+    left, right, low, high = window(function)
+    span = right - left if along_h else high - low
     for finding in verdict.findings:
         spot = spot_of(finding, observed)
         if finding.unit != "cd" or finding.required is None or finding.sense is None:

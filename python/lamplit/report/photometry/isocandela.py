@@ -39,6 +39,10 @@ Array = NDArray[np.float64]
 
 #: Lines at 1, 2 and 5 times powers of ten, this many at most, over so many powers.
 _MOST_LEVELS, _POWERS = 10, 3.0
+#: Cells above this share of the brightest are worth looking at.
+_WORTH_A_LOOK = 0.05
+#: A line is left out where the cells about its level have a larger relative error, in the median.
+_TOO_NOISY, _ABOUT = 0.12, 1.5
 _LOW, _HIGH = "#c9ced6", "#8f1d14"
 
 
@@ -64,6 +68,20 @@ def contour_levels(peak: float) -> list[float]:
     return below[-_MOST_LEVELS:]
 
 
+def clear_levels(levels: Sequence[float], cd: Array, standard_error: Array) -> list[float]:
+    """Return those of ``levels`` that are not lost in noise.
+
+    The line of a level wanders where the cells about it, within a factor of 1.5, are uncertain by
+    more than 12 % in the median.
+    """
+    found: list[float] = []
+    for level in levels:
+        about = (cd > level / _ABOUT) & (cd < level * _ABOUT)
+        if about.any() and float(np.median(standard_error[about] / cd[about])) <= _TOO_NOISY:
+            found.append(level)
+    return found
+
+
 def brightest(observed: Observed) -> tuple[float, float, float]:
     """Return H, V in degrees and the intensity in cd of the grid's brightest cell."""
     row, column = np.unravel_index(int(np.argmax(observed.grid_cd)), observed.grid_cd.shape)
@@ -74,11 +92,34 @@ def brightest(observed: Observed) -> tuple[float, float, float]:
     )
 
 
+def window(function: FunctionResults) -> tuple[float, float, float, float]:
+    """Return the part of the grid worth looking at: least and greatest H, then V, in degrees.
+
+    It holds the spots, the fields of visibility, and all cells above a twentieth of the brightest.
+    """
+    observed = function.observed
+    h, v = observed.grid_h_edges_deg, observed.grid_v_edges_deg
+    bright = observed.grid_cd > _WORTH_A_LOOK * observed.grid_cd.max()
+    columns, rows = np.flatnonzero(bright.any(axis=0)), np.flatnonzero(bright.any(axis=1))
+    across, along = [*observed.spot_h_deg], [*observed.spot_v_deg]
+    across += [h[columns[0]], h[columns[-1] + 1]] if columns.size else [h[0], h[-1]]
+    along += [v[rows[0]], v[rows[-1] + 1]] if rows.size else [v[0], v[-1]]
+    for left, right, low, high in function.fields_deg:
+        across += [left, right]
+        along += [low, high]
+    return (
+        max(float(min(across)), float(h[0])),
+        min(float(max(across)), float(h[-1])),
+        max(float(min(along)), float(v[0])),
+        min(float(max(along)), float(v[-1])),
+    )
+
+
 def draw_isocandela(function: FunctionResults) -> Figure:
     """Draw lines of equal intensity, the field that the rule asks for, and the test points."""
     observed = function.observed
-    h_edges, v_edges = observed.grid_h_edges_deg, observed.grid_v_edges_deg
-    span_h, span_v = float(np.ptp(h_edges)), float(np.ptp(v_edges))
+    left, right, low, high = window(function)
+    span_h, span_v = right - left, high - low
     width = 9.6
     plot_w = 0.885 * width
     plot_h = float(np.clip(plot_w * span_v / span_h, 2.2, 6.4))
@@ -90,48 +131,57 @@ def draw_isocandela(function: FunctionResults) -> Figure:
         figure,
         f"{shortened(observed.name, 40)}: luminous intensity in cd",
         f"lines of equal intensity; + brightest cell, {cd(peak)} cd at H {angle(h_peak)}°, "
-        f"V {angle(v_peak)}°{'' if function.field_deg is None else '; dashed: field of the rule'}",
+        f"V {angle(v_peak)}°{'; dashed: field of visibility' if function.fields_deg else ''}",
     )
     stretched = not math.isclose(plot_w * span_v / span_h, plot_h, rel_tol=0.02)
     note = "; V is drawn larger than H" if stretched and plot_h == 2.2 else ""
     dress(axes, x=f"H in °, positive to the right of an observer before the lamp{note}",
           y="V in °, positive upwards")  # fmt: skip
-    pad_h, pad_v = 0.012 * span_h, 0.012 * span_h * plot_h / plot_w * span_v / span_h
-    axes.set(
-        xlim=(h_edges[0] - pad_h, h_edges[-1] + pad_h),
-        ylim=(v_edges[0] - 3 * pad_v, v_edges[-1] + 3 * pad_v),
-    )
+    pad_h, pad_v = 0.012 * span_h, 0.03 * span_v
+    axes.set(xlim=(left - pad_h, right + pad_h), ylim=(low - pad_v, high + pad_v))
     axes.axhline(0.0, color=QUIET, linewidth=0.6)
     axes.axvline(0.0, color=QUIET, linewidth=0.6)
-    _draw_lines(axes, observed, peak)
+    left_out = _draw_lines(axes, observed, peak)
     _draw_field(axes, function)
     outcomes = _draw_points(axes, function)
     axes.plot(h_peak, v_peak, "+", color=INK, ms=9, mew=1.2, zorder=5)
     outcome_legend(axes, outcomes, at=(0.0, -0.38 / plot_h))
-    write(figure, 0.96, 0.16 / height, f"{_count(observed.paths)} paths",
+    noisy = f"below {max(left_out):g} cd too uncertain for lines; " if left_out else ""
+    write(figure, 0.96, 0.16 / height, f"{noisy}{_count(observed.paths)} paths",
           size=7.5, ink=QUIET, align="right")  # fmt: skip
     return figure
 
 
-def _draw_lines(axes: Axes, observed: Observed, peak: float) -> None:
+def _draw_lines(axes: Axes, observed: Observed, peak: float) -> list[float]:
+    """Draw the lines that noise does not hide; return the levels that it does."""
     from matplotlib.colors import LinearSegmentedColormap, LogNorm
     from matplotlib.patheffects import withStroke
 
-    levels = contour_levels(peak)
+    every = contour_levels(peak)
+    levels = clear_levels(every, observed.grid_cd, observed.grid_standard_error_cd)
     if not levels or min(observed.grid_cd.shape) < 2:
-        axes.text(0.5, 0.5, "no light in the field" if peak == 0.0 else "too few cells for lines",
+        axes.text(0.5, 0.5, _no_lines(observed, every),
                   transform=axes.transAxes, ha="center", color=QUIET, fontsize=9)  # fmt: skip
-        return
+        return every
     ramp = LinearSegmentedColormap.from_list("intensity", [_LOW, "#d98a7b", _HIGH])
     norm = LogNorm(levels[0], max(levels[-1], 1.001 * levels[0]))
     where = (middles(observed.grid_h_edges_deg), middles(observed.grid_v_edges_deg))
-    lines = axes.contour(
-        *where, observed.grid_cd, levels=levels, cmap=ramp, norm=norm, linewidths=1.1
-    )
+    inks = [ramp(norm(level)) for level in levels]
+    lines = axes.contour(*where, observed.grid_cd, levels=levels, colors=inks, linewidths=1.1)
     edge = [withStroke(linewidth=2.4, foreground=PAPER)]
     for level, (x, y) in label_places(levels, lines.allsegs):
         axes.text(x, y, f"{level:g}", fontsize=7.5, color=INK, ha="center", va="center",
                   path_effects=edge, family=FONT, zorder=3.5, clip_on=True)  # fmt: skip
+    return [level for level in every if level not in levels]
+
+
+def _no_lines(observed: Observed, levels: list[float]) -> str:
+    """Say why there is no line."""
+    if not levels:
+        return "no light in the field"
+    if min(observed.grid_cd.shape) < 2:
+        return "too few cells for lines"
+    return "no line is certain to 12 %: more paths show them"
 
 
 def label_places(
@@ -158,12 +208,10 @@ def label_places(
 def _draw_field(axes: Axes, function: FunctionResults) -> None:
     from matplotlib.patches import Rectangle
 
-    if function.field_deg is None:
-        return
-    left, right, low, high = function.field_deg
-    border = Rectangle((left, low), right - left, high - low, fill=False, edgecolor=ACCENT)
-    border.set(linewidth=1.1, linestyle=(0, (5, 3)), zorder=3)
-    axes.add_patch(border)
+    for left, right, low, high in function.fields_deg:
+        border = Rectangle((left, low), right - left, high - low, fill=False, edgecolor=ACCENT)
+        border.set(linewidth=1.1, linestyle=(0, (5, 3)), zorder=3)
+        axes.add_patch(border)
 
 
 def _draw_points(axes: Axes, function: FunctionResults) -> list[Outcome]:

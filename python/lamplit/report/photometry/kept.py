@@ -118,7 +118,7 @@ class KeptFunction(_Kept):
     spots: list[KeptSpot]
     grid: KeptGrid
     region: KeptRegion | None
-    field_deg: Four | None
+    fields_deg: list[Four]
     spectrum: KeptSpectrum | None
 
 
@@ -244,7 +244,7 @@ def _kept_function(one: shown.FunctionResults) -> KeptFunction:
         region=None if one.region is None else KeptRegion(
             name=one.region.name, outline_xy=one.region.outline_xy.tolist()
         ),
-        field_deg=one.field_deg,
+        fields_deg=list(one.fields_deg),
         spectrum=None if one.spectrum is None else _kept_spectrum(one.spectrum),
     )  # fmt: skip
 
@@ -327,6 +327,6 @@ def _function(one: KeptFunction, grid_xyz: Array, grid_error: Array) -> shown.Fu
             production=verdict.production,
         ),
         None if region is None else shown.ColourRegion(region.name, np.array(region.outline_xy)),
-        one.field_deg,
+        tuple(one.fields_deg),
         None if one.spectrum is None else _spectrum(one.spectrum),
     )  # fmt: skip

@@ -93,8 +93,8 @@ class FunctionResults:
     verdict: Verdict | None = None
     #: Where its colour must lie; None where no rule says so.
     region: ColourRegion | None = None
-    #: Least and greatest H, then V, in degrees, of the field that the rule asks for.
-    field_deg: tuple[float, float, float, float] | None = None
+    #: Fields of visibility that the rule asks for: least and greatest H, then V, in degrees.
+    fields_deg: tuple[tuple[float, float, float, float], ...] = ()
     #: Of the light in the direction of the reference axis.
     spectrum: Spectrum | None = None
 

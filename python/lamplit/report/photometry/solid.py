@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lamplit.report.photometry.isocandela import brightest, middles
+from lamplit.report.photometry.isocandela import brightest, middles, window
 from lamplit.report.photometry.style import FAINT, INK, QUIET, cd, head, new_figure, shortened
 from lamplit.report.photometry.table import angle
 from lamplit.report.sheet import FONT
@@ -55,7 +55,7 @@ def draw_solid(function: FunctionResults) -> Figure | None:
     corners = solid_points(observed)
     step_v, step_h = (-(-size // _MOST_LINES) for size in observed.grid_cd.shape)
     corners = corners[::step_v, ::step_h]
-    half_deg = min(float(np.abs(observed.grid_h_edges_deg).max()), 90.0)
+    half_deg = float(np.clip(np.abs(window(function)[:2]).max(), 20.0, 60.0))
     _draw_rings(axes, peak, half_deg)
     _draw_surface(axes, corners, peak)
     _set_view(axes, corners, peak, half_deg)

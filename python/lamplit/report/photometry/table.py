@@ -164,7 +164,7 @@ def in_words(verdict: Verdict) -> str:
     words = (
         f"{finding.requirement}{f' ({where})' if where and where != finding.requirement else ''}"
     )
-    if finding.required is not None:
+    if finding.required is not None and finding.margin_percent is not None:
         spread = two_sigma(finding)
         words += f": {got(finding)}{f' {spread}' if spread else ''}, required {required(finding)}"
         words += f", margin {margin(finding)}" if margin(finding) else ""
