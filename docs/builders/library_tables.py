@@ -17,7 +17,7 @@ from lamplit.materials.appearance import (
     surface_reflectance,
 )
 from lamplit.materials.optics import LINE_D_NM, abbe_number, normal_reflectance
-from lamplit.sources import source, source_names
+from lamplit.sources import BulbName, bulb, bulb_names, source, source_names
 
 #: A usual lamp lens, the thickness at which a plate's numbers are given.
 _LENS_MM = 2.5
@@ -35,6 +35,10 @@ def material_sections() -> dict[str, str]:
         "sources": table(
             ("name", "x", "y", "λ_d in nm", "lm/W", "what it is"),
             (_source_row(name) for name in source_names()),
+        ),
+        "bulbs": table(
+            ("name", "lm", "±", "bulb", "reference"),
+            (_bulb_row(name) for name in bulb_names()),
         ),
         "source-references": "\n".join(_source_references()),
     }
@@ -78,6 +82,12 @@ def _source_row(name: str) -> tuple[str, ...]:
     hue = f"{wavelength:.1f}" if purity > 0.5 else "–"
     efficacy = f"{luminous_efficacy(spd):.0f}"
     return f"`{name}`", f"{xy[0]:.4f}", f"{xy[1]:.4f}", hue, efficacy, entry.description
+
+
+def _bulb_row(name: BulbName) -> tuple[str, ...]:
+    entry = bulb(name)
+    spread = f"{100 * entry.tolerance:g} %"
+    return f"`{name}`", f"{entry.flux_lm:g}", spread, entry.description, entry.reference
 
 
 def _source_references() -> list[str]:

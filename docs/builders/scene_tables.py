@@ -44,6 +44,7 @@ _SECTIONS: dict[str, dict[str, str]] = {
         "CosineDistribution": "`distribution = { cosine_exponent }`",
         "FileDistribution": "`distribution = { file, axis, up }`",
     },
+    "ray-files": {"RayFile": "`[[ray_files]]`"},
     "materials": dict.fromkeys(
         ["Dielectric", "Conductor", "Mirror", "Diffuse", "DiffuseTransmitter", "Checker", "Glossy"],
         "",
@@ -88,6 +89,7 @@ _SECTIONS: dict[str, dict[str, str]] = {
 _TOLD_ABOVE = {
     "background": {"group", "suns"},
     "objects": {"name", "material", "priority", "transform", "emission"},
+    "ray-files": {"transform"},
     "materials": {"description", "references", "licence", "hall", "roughness", "texture"},
     "lights": {"name", "source", "luminance_cd_m2"},
     "spectra": {"interpolation", "extension", "scale"},

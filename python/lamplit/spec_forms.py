@@ -6,13 +6,23 @@ from __future__ import annotations
 import difflib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import cast
+from typing import Annotated, TypeAlias, cast
 
-from pydantic import BaseModel, ValidationInfo
+from pydantic import BaseModel, ConfigDict, Field, ValidationInfo
 from pydantic_core import PydanticCustomError
 
 from lamplit.errors import LamplitError
 from lamplit.files import resolve_inside
+
+#: A finite number; text and true/false are refused.
+Number: TypeAlias = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Positive: TypeAlias = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0)]
+
+
+class Form(BaseModel):
+    """One way to write a value: every key known, none changed later."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
 
 
 def form_tag(value: object, forms: Mapping[str, type[BaseModel]]) -> str | None:

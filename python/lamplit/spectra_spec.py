@@ -41,13 +41,11 @@ from pydantic import (
 )
 
 from lamplit.errors import LamplitError
-from lamplit.spec_forms import file_below_root, form_tag, spec_fault
-from lamplit.spectrum import Extension, Interpolation, LedModel, SpectralDistribution
+from lamplit.led_spec import LedSource
+from lamplit.spec_forms import Form, Number, Positive, file_below_root, form_tag, spec_fault
+from lamplit.spectrum import Extension, Interpolation, SpectralDistribution
 from lamplit.spectrum_files import Table, check_table, read_csv, read_spdx
 
-#: A finite number; text and true/false are refused.
-Number: TypeAlias = Annotated[float, Field(strict=True, allow_inf_nan=False)]
-Positive: TypeAlias = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0)]
 Column: TypeAlias = Annotated[tuple[Number, ...], Field(strict=False)]
 
 
@@ -65,11 +63,7 @@ class ConstantSpectrum(RootModel[Number]):
         return np.array([self.root])
 
 
-class _Form(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-
-class _Points(_Form):
+class _Points(Form):
     """What every measured table says of how to read between and beyond its points."""
 
     interpolation: Interpolation | None = Field(
@@ -163,7 +157,7 @@ class NamedSource(RootModel[Annotated[str, Field(strict=True, min_length=1)]]):
     model_config = ConfigDict(frozen=True)
 
 
-class BlackbodySource(_Form):
+class BlackbodySource(Form):
     """Planck's law at one temperature."""
 
     temperature_kelvin: Annotated[Positive, Field(ge=100, le=1e5)] = Field(
@@ -173,24 +167,6 @@ class BlackbodySource(_Form):
     def distribution(self) -> SpectralDistribution:
         """Return the spectral radiance."""
         return SpectralDistribution.blackbody(self.temperature_kelvin)
-
-
-class LedSource(_Form):
-    """A single-colour LED by its peak and its full width at half maximum."""
-
-    led_peak_nm: Annotated[Positive, Field(ge=100, le=3000)] = Field(
-        description="where it shines most"
-    )
-    led_fwhm_nm: Annotated[Positive, Field(ge=0.1, le=500)] = Field(
-        description="full width at half of the maximum"
-    )
-    model: LedModel = Field(
-        default="ohno", description="shape of the spectrum: Ohno's, or a plain Gaussian"
-    )
-
-    def distribution(self) -> SpectralDistribution:
-        """Return the relative spectral power, 1 at the peak."""
-        return SpectralDistribution.led(self.led_peak_nm, self.led_fwhm_nm, model=self.model)
 
 
 _TABLES: dict[str, type[BaseModel]] = {

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -14,7 +15,7 @@ from lamplit.cli.sources import sources as sources_command
 from lamplit.colour.tristimulus import chromaticity_xy, luminous_efficacy, tristimulus
 from lamplit.errors import LamplitError, OutputError, SpectrumError
 from lamplit.report.source_plot import plot_source
-from lamplit.sources import source, source_names
+from lamplit.sources import bulb, bulb_names, source, source_names
 
 NM = np.arange(380.0, 781.0)
 
@@ -120,3 +121,33 @@ def test_a_plot_needs_a_source_and_a_place_to_go(tmp_path: Path) -> None:
     for path in (tmp_path / "absent" / "led.png", tmp_path / "led.unknown"):
         with pytest.raises(OutputError, match="cannot be written"):
             plot_source(source("A"), path)
+
+
+#: Lamp, luminous flux in lm, tolerance: FACTS §3, from the sheets of UN R37 at 13.5 V.
+BULBS = {
+    "p21w": (460.0, 0.15),
+    "p21-5w-bright": (440.0, 0.15),
+    "p21-5w-dim": (35.0, 0.2),
+    "py21w": (280.0, 0.2),
+    "py21-5w-bright": (270.0, 0.2),
+    "py21-5w-dim": (21.0, 0.2),
+    "w5w": (50.0, 0.2),
+}
+
+
+def test_bulbs_have_the_flux_of_their_sheets_and_say_how_far_to_trust_it() -> None:
+    assert set(bulb_names()) == set(BULBS)
+    for name, (flux_lm, tolerance) in BULBS.items():
+        entry = bulb(name)
+        assert (entry.name, entry.flux_lm, entry.tolerance) == (name, flux_lm, tolerance)
+        assert entry.test_voltage_v == 13.5
+        assert re.search(r"flux (and tolerance )?V2?\b", entry.reference)
+
+
+def test_the_command_tells_a_bulb(capsys: pytest.CaptureFixture[str]) -> None:
+    sources_command("p21-5w-dim")
+    shown = " ".join(capsys.readouterr().out.split())
+    assert "35 lm ± 20 %" in shown
+    assert 'bulb = "p21-5w-dim"' in shown
+    sources_command()
+    assert "w5w 50 lm" in capsys.readouterr().out

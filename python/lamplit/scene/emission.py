@@ -13,6 +13,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 from pydantic_core import PydanticCustomError
 
 from lamplit.scene.fields import Direction, FileName, GroupName, NotNegative, Positive, Table
+from lamplit.sources import BulbName
 from lamplit.spectra_spec import FractionSpec, SourceSpec
 from lamplit.spectrum import SpectralDistribution
 
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from lamplit.photometry import Photometry
 
 #: The keys of which a source needs exactly one.
-_STRENGTHS = ("flux_lm", "radiant_flux_w", "luminance_cd_m2")
+_STRENGTHS = ("flux_lm", "flux_lm_at_25_celsius", "bulb", "radiant_flux_w", "luminance_cd_m2")
 
 #: What `ResolvedEmission.amount` counts.
 Quantity: TypeAlias = Literal["flux_lm", "radiant_flux_w", "luminance_cd_m2", "spectral_radiance"]
@@ -86,6 +87,13 @@ class Emission(Table):
         default=None, description="the shape of the spectrum; its scale has no meaning"
     )
     flux_lm: NotNegative | None = Field(default=None, description="luminous flux of the object")
+    flux_lm_at_25_celsius: NotNegative | None = Field(
+        default=None,
+        description="that of its LED when cold, as in data sheets; its heat is counted",
+    )
+    bulb: BulbName | None = Field(
+        default=None, description="the flux of a bulb; `lamplit sources` lists them"
+    )
     radiant_flux_w: NotNegative | None = Field(
         default=None, description="radiant flux of the object within image.wavelength_range_nm"
     )

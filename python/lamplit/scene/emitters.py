@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lamplit.colour.tristimulus import luminous_efficacy
 from lamplit.errors import LamplitError, SceneError
 from lamplit.files import resolve_inside
+from lamplit.led_spec import LedSource
 from lamplit.scene.emission import (
     CosineDistribution,
     Emission,
@@ -20,6 +22,8 @@ from lamplit.scene.fields import is_group_name
 from lamplit.scene.models import Scene
 from lamplit.scene.objects import Object
 from lamplit.scene.references import resolve_source
+from lamplit.sources import bulb
+from lamplit.spectra_spec import NamedSource
 from lamplit.spectrum import Array, SpectralDistribution
 
 if TYPE_CHECKING:
@@ -44,18 +48,41 @@ def resolve_emission(scene: Scene, shape: Object, at: int) -> ResolvedEmission |
         photometry = _photometry(scene, own.distribution, at)
         turn = shape.transform.matrix()[:3, :3] / shape.transform.scale
         frame = own.distribution.frame() @ turn.T
-    quantity, amount = _strength(own)
+    quantity, amount = _strength(scene, own, at)
     spectrum = _spectrum(scene, own)
     group = own.group or shape.name
     return ResolvedEmission(group, spectrum, quantity, amount, exponent, photometry, frame)
 
 
-def _strength(own: Emission) -> tuple[Quantity, float]:
+def _strength(scene: Scene, own: Emission, at: int) -> tuple[Quantity, float]:
+    if own.bulb is not None:
+        return "flux_lm", bulb(own.bulb).flux_lm
+    if own.flux_lm_at_25_celsius is not None:
+        return "flux_lm", own.flux_lm_at_25_celsius * _heated_share(scene, own, at)
     for name in _STRENGTHS:
         amount: float | None = getattr(own, name)
         if amount is not None:
             return name, amount
     return "spectral_radiance", 1.0
+
+
+def _heated_share(scene: Scene, own: Emission, at: int) -> float:
+    """Return the luminous flux of an LED as a share of that at 25 °C.
+
+    The peak moves along V(λ), and the radiant flux falls.
+    """
+    led = own.source
+    if isinstance(led, NamedSource):
+        led = scene.sources.get(led.root)
+    if not isinstance(led, LedSource):
+        raise SceneError(
+            "flux_lm_at_25_celsius needs a source { led_peak_nm, led_fwhm_nm, "
+            "junction_temperature_celsius }, here or in [sources]; for others give flux_lm",
+            file=scene.path,
+            where=f"objects[{at}].emission.flux_lm_at_25_celsius",
+        )
+    hot = luminous_efficacy(led.distribution())
+    return led.radiant_share * hot / luminous_efficacy(led.at_reference().distribution())
 
 
 def _spectrum(scene: Scene, own: Emission) -> SpectralDistribution:

@@ -77,6 +77,8 @@ def _check_files(scene: Scene) -> None:
         if isinstance(spread, FileDistribution):
             where = f"objects[{at}].emission.distribution.file"
             resolve_inside(scene.root, spread.file, where=where)
+    for at, rays in enumerate(scene.ray_files):
+        resolve_inside(scene.root, rays.file, where=f"ray_files[{at}].file")
     if isinstance(scene.background, ImageBackground):
         resolve_inside(scene.root, scene.background.file, where="background.file")
     icc = getattr(scene.display.space, "icc", None)

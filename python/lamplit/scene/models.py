@@ -17,6 +17,7 @@ from lamplit.scene.fields import Name, Table
 from lamplit.scene.lighting import BLACK, Ambient, Background, Light
 from lamplit.scene.methods import HallSettings, PathSettings
 from lamplit.scene.objects import Object
+from lamplit.scene.ray_files import RayFile, ResolvedRays
 from lamplit.spectra_spec import SourceSpec
 from lamplit.spectrum import SpectralDistribution
 
@@ -87,6 +88,10 @@ class Scene(Table):
     )
     objects: Annotated[tuple[Object, ...], Field(strict=False, max_length=10_000)] = Field(
         default=(), description="all bodies and surfaces; one at least"
+    )
+
+    ray_files: Annotated[tuple[RayFile, ...], Field(strict=False, max_length=1000)] = Field(
+        default=(), description="sources measured ray by ray, for forward transport"
     )
 
     _root: Path = PrivateAttr(default=Path())
@@ -161,6 +166,16 @@ class Scene(Table):
         from lamplit.scene.resolve import resolve_objects
 
         return list(resolve_objects(self))
+
+    def resolved_rays(self) -> tuple[ResolvedRays, ...]:
+        """Return the rays of ``[[ray_files]]`` in the scene's coordinates; each file is read.
+
+        Raises:
+            SceneError: A file cannot be used, or nothing says what spectrum its rays have.
+        """
+        from lamplit.scene.rays import resolve_rays
+
+        return resolve_rays(self)
 
     @cached_property
     def environment(self) -> NDArray[np.float32] | None:

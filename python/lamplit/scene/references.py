@@ -57,6 +57,7 @@ def check_references(scene: Scene) -> None:
                 where=f"objects[{at}].name",
             )
         seen[thing.name] = at
+    _check_ray_files(scene)
     sources = set(source_names())
     for keys, source in values_of(scene, NamedSource):
         name = source.root
@@ -67,6 +68,17 @@ def check_references(scene: Scene) -> None:
                 f"no source is called {name!r}{nearest_name(name, names)}{_see('sources')}",
                 where=key_path(keys),
             )
+
+
+def _check_ray_files(scene: Scene) -> None:
+    seen: dict[str, int] = {}
+    for at, rays in enumerate(scene.ray_files):
+        if rays.name in seen:
+            raise SceneError(
+                f"ray_files[{seen[rays.name]}] is called {rays.name!r} too; choose another name",
+                where=f"ray_files[{at}].name",
+            )
+        seen[rays.name] = at
 
 
 def _check_finish(name: str, own: LibraryMaterial) -> None:

@@ -25,7 +25,7 @@ from lamplit.scene.models import Scene
 def light_groups(scene: Scene) -> tuple[str, ...]:
     """Return the names of the light groups: the background's, then the others as they come.
 
-    Soft boxes come before suns, and these before objects.
+    Soft boxes come before suns, these before objects, and ray files last.
     """
     background = scene.background
     names = [background.group]
@@ -33,6 +33,7 @@ def light_groups(scene: Scene) -> tuple[str, ...]:
         names += [soft_box.group for soft_box in background.soft_boxes]
     names += [sun.group for sun in background.suns]
     names += [own.emission.group or own.name for own in scene.objects if own.emission is not None]
+    names += [own.group or own.name for own in scene.ray_files]
     return tuple(dict.fromkeys(names))
 
 
@@ -79,10 +80,12 @@ def path_notices(scene: Scene) -> tuple[str, ...]:
     dark = scene.ambient is None or scene.ambient.luminance_cd_m2 == 0.0
     lit = [light for light in scene.lights if light.luminance_cd_m2 > 0.0]
     left_out = [] if dark else ["[ambient]"]
+    rays = _ray_notices(scene)
     if lit:
         left_out.append("1 of [[lights]]" if len(lit) == 1 else f"{len(lit)} of [[lights]]")
     if not any(_shining(scene)):
         besides = " ([[lights]] and [ambient] belong to the Hall method)" if left_out else ""
+        besides += " ([[ray_files]] belong to forward transport)" if rays else ""
         raise SceneError(
             f"nothing shines that path transport can follow{besides}: give an object an emission, "
             'or the scene a background, or say method = "hall"',
@@ -90,12 +93,22 @@ def path_notices(scene: Scene) -> tuple[str, ...]:
             where="image.method",
         )
     if not left_out:
-        return ()
+        return rays
     notice = (
         f"path transport leaves out {' and '.join(left_out)} of the Hall method; it follows "
         "emissions and the background"
     )
-    return (notice,)
+    return (notice, *rays)
+
+
+def _ray_notices(scene: Scene) -> tuple[str, ...]:
+    count = len(scene.ray_files)
+    if count == 0:
+        return ()
+    files = "1 of [[ray_files]]" if count == 1 else f"{count} of [[ray_files]]"
+    return (
+        f"a picture leaves out {files}: rays are followed forward only, when a lamp is measured",
+    )
 
 
 def _shining(scene: Scene) -> Iterator[bool]:

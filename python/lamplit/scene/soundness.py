@@ -11,6 +11,7 @@ from lamplit.errors import SceneError
 from lamplit.scene.contact import Contact, find_contacts
 from lamplit.scene.memory import MemoryEstimate, memory_estimate
 from lamplit.scene.models import Scene
+from lamplit.scene.rays import ray_faults, ray_notices
 from lamplit.scene.references import values_of
 from lamplit.scene.resolve import ResolvedObject, solid_faults
 from lamplit.scene.shining import light_faults, path_notices
@@ -58,6 +59,8 @@ def check_scene(scene: Scene) -> Report:
         *_contacts(everything),
         *_unused(scene),
     ]
+    if not any(finding.subject.startswith("ray_files") for finding in found):
+        found += [Finding("notice", "ray_files", notice) for notice in ray_notices(scene)]
     if not any(finding.subject == "background.file" for finding in found):
         found += _path_findings(scene)
     order = ("error", "warning", "notice")
@@ -66,7 +69,12 @@ def check_scene(scene: Scene) -> Report:
 
 
 def _errors(scene: Scene) -> Iterator[Finding]:
-    faults = [*spectral_faults(scene), *solid_faults(scene), *light_faults(scene)]
+    faults = [
+        *spectral_faults(scene),
+        *solid_faults(scene),
+        *light_faults(scene),
+        *ray_faults(scene),
+    ]
     if (unseen := view_fault(scene)) is not None:
         faults.append(unseen)
     for fault in faults:

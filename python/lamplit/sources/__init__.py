@@ -6,11 +6,20 @@ from __future__ import annotations
 from functools import cache
 
 from lamplit.errors import SpectrumError, nearest_name
+from lamplit.sources.bulbs import Bulb, BulbName, bulb, bulb_names
 from lamplit.sources.cie import cie_entries
 from lamplit.sources.entry import SourceEntry
 from lamplit.sources.lamps import lamp_entries
 
-__all__ = ["SourceEntry", "source", "source_names"]
+__all__ = [
+    "Bulb",
+    "BulbName",
+    "SourceEntry",
+    "bulb",
+    "bulb_names",
+    "source",
+    "source_names",
+]
 
 
 @cache
