@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Annotated, TypeAlias
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Annotated, TypeAlias, cast
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -119,5 +119,5 @@ def choices_within(value: object, where: str = "") -> Iterator[tuple[str, _By]]:
         for key in type(value).model_fields:
             yield from choices_within(getattr(value, key), f"{where}.{key}" if where else key)
     elif isinstance(value, (list, tuple)):
-        for at, inner in enumerate(value):  # pyright: ignore[reportUnknownVariableType,reportUnknownArgumentType]
+        for at, inner in enumerate(cast("Sequence[object]", value)):
             yield from choices_within(inner, f"{where}[{at}]")

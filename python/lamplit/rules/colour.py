@@ -22,7 +22,7 @@ _FILE = Path(__file__).parent / "library" / "colours.toml"
 
 #: A chromaticity so near to a border lies on it, and the regulations' ≤ let it through.
 _ON_BORDER = 1e-9
-#: Added to a covariance, (x, y)²: a colour that does not scatter has an ellipse of this size.
+#: The least variance of x and y: a colour that does not scatter has a circle of this size.
 _SMALLEST_VARIANCE = 1e-18
 
 
@@ -77,8 +77,9 @@ class Region:
         pieces = self.crossable if inside else np.ones_like(self.crossable)
         distance, _ = _nearest(point, self.border, pieces)
         spread = np.zeros((2, 2)) if covariance is None else np.asarray(covariance, np.float64)
-        factor = np.linalg.cholesky(spread + _SMALLEST_VARIANCE * np.eye(2))
-        whitened = np.linalg.solve(factor, (self.border - point).T).T
+        variances, axes = np.linalg.eigh(spread)
+        lengths = np.sqrt(np.maximum(variances, _SMALLEST_VARIANCE))
+        whitened = np.asarray((self.border - point) @ axes / lengths, dtype=np.float64)
         sigmas, at = _nearest(np.zeros(2), whitened, pieces)
         sign = 1.0 if inside else -1.0
         error = distance / sigmas if sigmas > 0.0 else float(np.sqrt(np.trace(spread)))
@@ -189,7 +190,8 @@ def _meeting(first: Edge, second: Edge) -> tuple[Array, float]:
     matrix = np.array([a[:2], b[:2]])
     if abs(float(np.linalg.det(matrix))) < 1e-12:
         raise RuleError(f"the edges {first.label!r} and {second.label!r} are parallel")
-    return np.linalg.solve(matrix, np.array([a[2], b[2]])), float("nan")
+    met = np.linalg.solve(matrix, np.array([a[2], b[2]]))
+    return np.asarray(met, dtype=np.float64), float("nan")
 
 
 def _line(edge: Edge, locus: Array) -> Array:

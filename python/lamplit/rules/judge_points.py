@@ -11,7 +11,7 @@ import numpy as np
 from lamplit.photometry.observed import Observed
 from lamplit.rules.case import Case
 from lamplit.rules.choices import chosen_name, chosen_numbers
-from lamplit.rules.decide import Source, finding, least_trusted
+from lamplit.rules.decide import Decision, Source, finding, least_trusted
 from lamplit.rules.extents import Box
 from lamplit.rules.models import Distribution
 from lamplit.rules.points import Segment, TestPoint, cells, required_points, segments
@@ -105,24 +105,27 @@ def _either(
 ) -> Iterator[Finding]:
     """Yield points and sums so that a point passes with its group, and a group with its points."""
     for point, single in zip(points, singles, strict=True):
-        group = None if point.group is None else sums[point.group]
-        yield _lifted(single, group and group.outcome, f"group {(point.group or 0) + 1}'s sum")
+        if point.group is None:
+            yield single
+        else:
+            group = sums[point.group]
+            other = Decision(group.outcome, group.paths_factor)
+            yield _lifted(single, other, f"group {point.group + 1}'s sum")
     for number, group in enumerate(sums):
-        members = [
-            own.outcome for point, own in zip(points, singles, strict=True) if point.group == number
-        ]
-        yield _lifted(group, worst(members), "each of its points")
+        members = [own for point, own in zip(points, singles, strict=True) if point.group == number]
+        factors = [own.paths_factor for own in members if own.paths_factor is not None]
+        whole = Decision(worst([own.outcome for own in members]), max(factors, default=None))
+        yield _lifted(group, whole, "each of its points")
 
 
-def _lifted(own: Finding, other: str | None, instead: str) -> Finding:
-    outcomes = [own.outcome, *(mark for mark in ("pass", "undecided", "fail") if mark == other)]
-    outcome = best(outcomes)
+def _lifted(own: Finding, other: Decision, instead: str) -> Finding:
+    """Return a finding with the better of two outcomes, of which one stands in for the other."""
+    outcome = best([own.outcome, other.outcome])
     if outcome == own.outcome:
         return own
     words = "meets the minimum" if outcome == "pass" else "may meet the minimum"
     remark = "; ".join(part for part in (own.remark, f"{instead} {words} in its place") if part)
-    factor = own.paths_factor if outcome == "undecided" else None
-    return replace(own, outcome=outcome, paths_factor=factor, remark=remark)
+    return replace(own, outcome=outcome, paths_factor=other.paths_factor, remark=remark)
 
 
 def _between(

@@ -15,12 +15,12 @@ _WORST_FIRST: tuple[Outcome, ...] = ("fail", "undecided", "pass")
 
 def worst(outcomes: Sequence[Outcome]) -> Outcome:
     """Return the worst of some outcomes; "undecided" where there are none."""
-    return min(outcomes, key=_WORST_FIRST.index, default="undecided")
+    return min(outcomes, key=_WORST_FIRST.index) if outcomes else "undecided"
 
 
 def best(outcomes: Sequence[Outcome]) -> Outcome:
     """Return the best of some outcomes; "undecided" where there are none."""
-    return max(outcomes, key=_WORST_FIRST.index, default="undecided")
+    return max(outcomes, key=_WORST_FIRST.index) if outcomes else "undecided"
 
 
 @dataclass(frozen=True)
