@@ -16,6 +16,7 @@ import pytest
 from PIL import Image as Raster
 
 from lamplit.errors import LamplitError
+from lamplit.photometry import read_photometry
 from lamplit.report.photometry.csv_files import CANDELA_HEADER, POINTS_HEADER
 from lamplit.report.photometry.files import write_measurement
 from lamplit.report.photometry.kept import read_results
@@ -208,3 +209,17 @@ def test_functions_whose_names_make_no_file_names_get_safe_ones(
     parts = tuple(replace(one, observed=replace(one.observed, name=name)) for name in names)
     found = stems(replace(usual, functions=parts))
     assert found == ["etc-passwd", "stop", "Stop-2", "function", "a-b"]
+
+
+def test_other_programs_get_the_grid_and_it_reads_back_in_their_frame(
+    folder: Path, make_results: Callable[..., Results]
+) -> None:
+    """In IES files of type A, H has the other sign."""
+    seen = make_results().functions[0].observed
+    table = read_photometry(folder / "stop.ies")
+    assert table.photometric_type == "A"
+    assert np.allclose(table.horizontal_deg, np.arange(-44.5, 45.0))
+    assert np.allclose(table.candela[::-1].T, seen.grid_cd, rtol=1e-5)
+    c_planes = read_photometry(folder / "stop.ldt")
+    on_axis = c_planes.intensity_cd(np.array([0.0, 0.0, 1.0]))
+    assert on_axis == pytest.approx(seen.grid_cd[14:16, 44:46].mean(), rel=1e-5)

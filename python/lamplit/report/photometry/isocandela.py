@@ -146,7 +146,7 @@ def draw_isocandela(function: FunctionResults) -> Figure:
     outcomes = _draw_points(axes, function)
     axes.plot(h_peak, v_peak, "+", color=INK, ms=9, mew=1.2, zorder=5)
     outcome_legend(axes, outcomes, at=(0.0, -0.38 / plot_h))
-    noisy = f"below {max(left_out):g} cd too uncertain for lines; " if left_out else ""
+    noisy = f"lines of {max(left_out):g} cd and less are too uncertain; " if left_out else ""
     write(figure, 0.96, 0.16 / height, f"{noisy}{_count(observed.paths)} paths",
           size=7.5, ink=QUIET, align="right")  # fmt: skip
     return figure

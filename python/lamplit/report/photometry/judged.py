@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from lamplit.photometry.observed import Observed
     from lamplit.report.photometry.results import Spectrum
     from lamplit.rules import Rule
-    from lamplit.rules.extents import Box
 
 
 def judged(
@@ -38,13 +37,23 @@ def judged(
         observed,
         judge(rule, observed, others=others, production=production),
         None if region is None else ColourRegion(region.title, region.border),
-        tuple(tuple(box) for box in _fields(rule)),
+        tuple(_fields(rule)),
         spectrum,
     )
 
 
-def _fields(rule: Rule) -> Iterator[Box]:
-    """Yield the ranges of H and V in which the lamp must be visible."""
+def _fields(rule: Rule) -> Iterator[tuple[float, float, float, float]]:
+    """Yield the ranges of H and V in which the lamp must be visible, what lies on top joined."""
     for own in rule.entry.field:
-        if rule.holds(own.when):
-            yield from visibility_boxes(own, rule).boxes
+        if not rule.holds(own.when):
+            continue
+        boxes = visibility_boxes(own, rule).boxes
+        sides = {(box.left_deg, box.right_deg) for box in boxes}
+        for left, right in sorted(sides):
+            stack = [box for box in boxes if (box.left_deg, box.right_deg) == (left, right)]
+            yield (
+                left,
+                right,
+                min(box.bottom_deg for box in stack),
+                max(box.top_deg for box in stack),
+            )
