@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: Apache-2.0 OR MIT
+"""The functions of a lamp that are measured, each with its rule under the options that hold."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lamplit.errors import LamplitError, nearest_name
+from lamplit.rules import Rule, find_rule
+
+if TYPE_CHECKING:
+    from lamplit.scene import Scene
+    from lamplit.scene.measuring import LampFunction
+
+Array = NDArray[np.float64]
+
+#: What a lamp is called that is measured with all its light and without functions.
+ALL_LIGHT = "all light"
+#: The grid where no rule asks for one: H and V in degrees, and the size of its cells.
+_GRID = ((-45.0, 45.0), (-15.0, 15.0), 1.0)
+_COUNTS = {1: "single", 2: "D"}
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A function to be measured."""
+
+    name: str
+    #: Weight of each light group; empty: all, once each.
+    light: Mapping[str, float]
+    rule: Rule | None = None
+    #: Name of the function that its rule's ratios are taken to.
+    with_position: str | None = None
+
+
+def asked_functions(
+    scene: Scene, *, rules: Sequence[str] = (), options: Sequence[str] = ()
+) -> tuple[Asked, ...]:
+    """Return the functions of ``scene``, or all its light as one.
+
+    ``rules`` are RULE, for every function, or FUNCTION=RULE; they take the place of the scene's.
+    ``options`` are KEY=VALUE for every rule that knows the option, such as ``period=night``.
+
+    Raises:
+        LamplitError: A rule, function or option is not known, or measures no lamp.
+    """
+    settings = scene.measure
+    functions = () if settings is None else settings.functions
+    named = _named_rules(rules, [own.name for own in functions] or [ALL_LIGHT])
+    if functions:
+        found = [
+            Asked(
+                own.name,
+                own.light,
+                _rule(scene, named.get(own.name, own.rule), own),
+                own.with_position,
+            )
+            for own in functions
+        ]
+    else:
+        found = [Asked(ALL_LIGHT, {}, _rule(scene, named.get(ALL_LIGHT), None))]
+    return tuple(_under(one, options, found) for one in found)
+
+
+def directions(functions: Sequence[Asked]) -> tuple[Array, tuple[Array, Array]]:
+    """Return all that must be measured: H and V of spots (p, 2), and the borders of the grid.
+
+    HV is always among the spots. The grid covers what every rule asks for, with the finest cells
+    that one asks for, and reaches from one half of a cell to the next, so that 0 is a border.
+    """
+    spots = [(0.0, 0.0)]
+    needs = []
+    for one in functions:
+        if one.rule is not None:
+            spots += zip(*(axis.tolist() for axis in one.rule.spots()), strict=True)
+            needs.append(one.rule.field())
+    if not needs:
+        needs = [_GRID]
+    cell = min(need[2] for need in needs)
+    edges = tuple(
+        _edges(min(need[axis][0] for need in needs), max(need[axis][1] for need in needs), cell)
+        for axis in (0, 1)
+    )
+    return np.array(list(dict.fromkeys(spots))), (edges[0], edges[1])
+
+
+def _edges(low: float, high: float, cell: float) -> Array:
+    """Return borders that are whole cells away from 0 and cover ``low`` to ``high``."""
+    first, last = np.floor(low / cell + 1e-9), np.ceil(high / cell - 1e-9)
+    if first == last:
+        first, last = first - 1.0, last + 1.0
+    return np.arange(first, last + 0.5) * cell
+
+
+def _named_rules(rules: Sequence[str], names: Sequence[str]) -> dict[str, str]:
+    found: dict[str, str] = {}
+    for text in rules:
+        name, equals, rule = (part.strip() for part in text.rpartition("="))
+        if not equals:
+            found |= dict.fromkeys(names, rule)
+            continue
+        if name not in names:
+            near = nearest_name(name, names) or f"; it has {', '.join(names)}"
+            raise LamplitError(f"the lamp has no function {name[:60]!r}{near}", where="--rule")
+        found[name] = rule
+    return found
+
+
+def _rule(scene: Scene, text: str | None, function: LampFunction | None) -> Rule | None:
+    """Return the rule under what the scene says of the function.
+
+    Raises:
+        LamplitError: There is no such rule, or it is one for retro-reflectors.
+    """
+    if text is None:
+        return None
+    rule = find_rule(text, root=scene.root)
+    if rule.reflex():
+        raise LamplitError(
+            f"{rule.id} is a rule for retro-reflectors, which shine by other light; "
+            "lamplit.rules.judge_reflex judges them",
+            file=scene.path,
+        )
+    if function is None:
+        return rule
+    said = {
+        "sections": str(function.sections),
+        "assembly": _COUNTS[function.lamps],
+        "side": function.side,
+    }
+    known = rule.rules.file.options
+    return rule.under(**{key: choice for key, choice in said.items() if choice and key in known})
+
+
+def _under(one: Asked, options: Sequence[str], every: Sequence[Asked]) -> Asked:
+    rule = one.rule
+    for text in options:
+        key, equals, choice = (part.strip() for part in text.partition("="))
+        if not equals:
+            raise LamplitError(
+                f"{text!r} is no option of a rule; write key=choice, such as period=night",
+                where="--option",
+            )
+        known = {name for other in every if other.rule for name in other.rule.rules.file.options}
+        if key not in known:
+            near = nearest_name(key, known) or f"; there are {', '.join(sorted(known)) or 'none'}"
+            raise LamplitError(f"no rule has the option {key[:60]!r}{near}", where="--option")
+        if rule is not None and key in rule.rules.file.options:
+            rule = rule.under(**{key: choice})
+    return Asked(one.name, one.light, rule, one.with_position)
