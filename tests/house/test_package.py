@@ -88,6 +88,7 @@ def test_the_wheel_installs_into_an_empty_environment_and_renders(tmp_path: Path
         names = archive.namelist()
         core = archive.read("lamplit/_core.abi3.so")
     assert "lamplit/materials/library/red-pmma.toml" in names
+    assert "lamplit/rules/library/un-r148.toml" in names
     assert "lamplit/scene/scene.schema.json" in names
     assert "lamplit/py.typed" in names
     assert "lamplit/cie/cie-1931-2.csv" in names

@@ -129,9 +129,19 @@ def test_unknown_sets_entries_options_and_choices_are_named_with_the_nearest(
         RuleError, match=r"sections = '4' is no choice of fmvss-108; it has 1, 2, 3"
     ):
         find_rule("fmvss-108/stop").under(sections=4)
-    for text in ("S1", "un-r148/", "/S1", ""):
+    for text in ("S1", "un-r148/", "/S1", "", "un-r148/S1?", "un-r148/S1?side", "un-r148/S1?=left"):
         with pytest.raises(RuleError, match="names no rule"):
             find_rule(text)
+
+
+def test_options_follow_a_rule_in_its_name_or_come_from_what_a_scene_says() -> None:
+    night = find_rule("un-r148/S2?period=night&side=left")
+    assert (night.options["period"], night.side, night.id) == ("night", "left", "un-r148/S2")
+    with pytest.raises(RuleError, match="no option 'perod'; did you mean 'period'"):
+        find_rule("un-r148/S2?perod=night")
+    stop = find_rule("fmvss-108/stop").where_known(sections=2, lamps=1, side="left")
+    assert stop.options == {"sections": "2", "lamps": "1", "mounting": "normal"}
+    assert find_rule("un-r148/S1").where_known(sections=2, side=None).side == "either"
 
 
 def test_an_own_file_is_found_below_the_scenes_folder_and_nowhere_else(tmp_path: Path) -> None:

@@ -71,6 +71,22 @@ def test_a_maximum_is_decided_by_the_brightest_cell_and_its_own_sigma() -> None:
         assert (own.outcome, own.got, own.h_deg, own.v_deg) == (outcome, 265.0, 30.5, 20.5)
 
 
+def test_a_cell_that_surely_fails_goes_before_a_darker_one_that_scatters_more() -> None:
+    rule = find_rule("un-r148/S1")
+
+    def two(h: np.ndarray, v: np.ndarray) -> np.ndarray:
+        sure = (np.abs(h - 40.5) < 0.1) & (np.abs(v - 10.5) < 0.1)
+        unsure = (np.abs(h - 30.5) < 0.1) & (np.abs(v - 10.5) < 0.1)
+        return np.where(sure, 0.29, np.where(unsure, 0.10, 100.0))
+
+    readings = observe(rule, two, cell_error=0.001)
+    # 0.10 ± 0.15 is 1.33 σ below 0.3.
+    error = np.where(readings.grid_cd == 0.10, 0.15, readings.grid_standard_error_cd)
+    verdict = judge(rule, replace(readings, grid_standard_error_cd=error))
+    own = next(one for one in verdict.findings if one.requirement.startswith("field"))
+    assert (own.outcome, own.got, own.h_deg) == ("fail", 0.29, 40.5)
+
+
 def test_no_light_at_a_point_is_0_cd_below_the_minimum_with_a_bound_on_sigma() -> None:
     rule = find_rule("un-r148/S1")
     readings = observe(rule, power_law(100.0, 0.0), at={(0.0, 0.0): 0.0}, relative_error=0.01)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -23,7 +24,8 @@ Array = NDArray[np.float64]
 ALL_LIGHT = "all light"
 #: The grid where no rule asks for one: H and V in degrees, and the size of its cells.
 _GRID = ((-45.0, 45.0), (-15.0, 15.0), 1.0)
-_COUNTS = {1: "single", 2: "D"}
+#: The function that a rule is named for, before the first "=": RULE has one in its options only.
+_FOR_FUNCTION = re.compile(r"([^=/?]+)=(.+)")
 
 
 @dataclass(frozen=True)
@@ -38,22 +40,19 @@ class Asked:
     with_position: str | None = None
 
 
-def asked_functions(
-    scene: Scene, *, rules: Sequence[str] = (), options: Sequence[str] = ()
-) -> tuple[Asked, ...]:
+def asked_functions(scene: Scene, *, rules: Sequence[str] = ()) -> tuple[Asked, ...]:
     """Return the functions of ``scene``, or all its light as one.
 
     ``rules`` are RULE, for every function, or FUNCTION=RULE; they take the place of the scene's.
-    ``options`` are KEY=VALUE for every rule that knows the option, such as ``period=night``.
 
     Raises:
-        LamplitError: A rule, function or option is not known, or measures no lamp.
+        LamplitError: A rule, option or function is not known, or it measures no lamp.
     """
     settings = scene.measure
     functions = () if settings is None else settings.functions
     named = _named_rules(rules, [own.name for own in functions] or [ALL_LIGHT])
     if functions:
-        found = [
+        return tuple(
             Asked(
                 own.name,
                 own.light,
@@ -61,10 +60,8 @@ def asked_functions(
                 own.with_position,
             )
             for own in functions
-        ]
-    else:
-        found = [Asked(ALL_LIGHT, {}, _rule(scene, named.get(ALL_LIGHT), None))]
-    return tuple(_under(one, options, found) for one in found)
+        )
+    return (Asked(ALL_LIGHT, {}, _rule(scene, named.get(ALL_LIGHT), None)),)
 
 
 def directions(functions: Sequence[Asked]) -> tuple[Array, tuple[Array, Array]]:
@@ -100,14 +97,15 @@ def _edges(low: float, high: float, cell: float) -> Array:
 def _named_rules(rules: Sequence[str], names: Sequence[str]) -> dict[str, str]:
     found: dict[str, str] = {}
     for text in rules:
-        name, equals, rule = (part.strip() for part in text.rpartition("="))
-        if not equals:
-            found |= dict.fromkeys(names, rule)
+        match = _FOR_FUNCTION.fullmatch(text.strip())
+        if match is None:
+            found |= dict.fromkeys(names, text.strip())
             continue
+        name = match[1].strip()
         if name not in names:
             near = nearest_name(name, names) or f"; it has {', '.join(names)}"
             raise LamplitError(f"the lamp has no function {name[:60]!r}{near}", where="--rule")
-        found[name] = rule
+        found[name] = match[2].strip()
     return found
 
 
@@ -128,28 +126,7 @@ def _rule(scene: Scene, text: str | None, function: LampFunction | None) -> Rule
         )
     if function is None:
         return rule
-    said = {
-        "sections": str(function.sections),
-        "assembly": _COUNTS[function.lamps],
-        "side": function.side,
-    }
-    known = rule.rules.file.options
-    return rule.under(**{key: choice for key, choice in said.items() if choice and key in known})
-
-
-def _under(one: Asked, options: Sequence[str], every: Sequence[Asked]) -> Asked:
-    rule = one.rule
-    for text in options:
-        key, equals, choice = (part.strip() for part in text.partition("="))
-        if not equals:
-            raise LamplitError(
-                f"{text!r} is no option of a rule; write key=choice, such as period=night",
-                where="--option",
-            )
-        known = {name for other in every if other.rule for name in other.rule.rules.file.options}
-        if key not in known:
-            near = nearest_name(key, known) or f"; there are {', '.join(sorted(known)) or 'none'}"
-            raise LamplitError(f"no rule has the option {key[:60]!r}{near}", where="--option")
-        if rule is not None and key in rule.rules.file.options:
-            rule = rule.under(**{key: choice})
-    return Asked(one.name, one.light, rule, one.with_position)
+    said = {"sections": function.sections, "lamps": function.lamps, "side": function.side}
+    options = text.partition("?")[2]
+    kept = {key: choice for key, choice in said.items() if f"{key}=" not in options}
+    return rule.where_known(**kept)

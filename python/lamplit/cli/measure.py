@@ -17,7 +17,6 @@ from lamplit.cli.measuring import (
     PathsOption,
     ProductionOption,
     ReceiverOption,
-    RuleChoiceOption,
     RuleOption,
     TimeOption,
     UntilDecidedOption,
@@ -36,7 +35,6 @@ def measure(
     scene: SceneArgument,
     output: OutputOption,
     rule: RuleOption = None,
-    option: RuleChoiceOption = None,
     paths: PathsOption = None,
     error: ErrorOption = None,
     time: TimeOption = None,
@@ -66,7 +64,7 @@ def measure(
     from lamplit.report.photometry.kept import MEASUREMENT_FILE
 
     wanted = Wanted(
-        scene, rule or (), option or (), distance, receiver, production, seed, set_ or ()
+        scene, rule or (), distance, receiver, production, seed, set_ or ()
     )
     prepare_output(output, (MEASUREMENT_FILE,))
     budget = Budget(paths, error, time, until_decided)

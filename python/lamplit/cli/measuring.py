@@ -26,16 +26,8 @@ RuleOption = Annotated[
     typer.Option(
         "--rule",
         metavar="[FUNCTION=]RULE",
-        help="What the lamp, or one function of it, has to meet, such as un-r148/S1, instead of "
-        "the scene's; may be repeated.",
-    ),
-]
-RuleChoiceOption = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--option",
-        metavar="KEY=CHOICE",
-        help="An option of the rules, such as period=night or side=left; may be repeated.",
+        help="What the lamp, or one function of it, has to meet, such as un-r148/S1 or "
+        "un-r148/S2?period=night, instead of the scene's; may be repeated.",
     ),
 ]
 PathsOption = Annotated[
@@ -99,7 +91,6 @@ class Wanted:
 
     place: Path
     rules: Sequence[str] = ()
-    options: Sequence[str] = ()
     distance_m: float | None = None
     receiver_deg: float | None = None
     production: bool = False
@@ -137,7 +128,7 @@ def measured(
     from lamplit.report.photometry.progress import MeasuringProgress
 
     scene = wanted.load()
-    functions = asked_functions(scene, rules=wanted.rules, options=wanted.options)
+    functions = asked_functions(scene, rules=wanted.rules)
     _check(budget, functions)
     spots, grid = directions(functions)
     progress = MeasuringProgress("Measuring", time_s=budget.time_s)

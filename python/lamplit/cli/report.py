@@ -17,7 +17,6 @@ from lamplit.cli.measuring import (
     PathsOption,
     ProductionOption,
     ReceiverOption,
-    RuleChoiceOption,
     RuleOption,
     TimeOption,
     UntilDecidedOption,
@@ -51,7 +50,6 @@ def report(
         ),
     ] = None,
     rule: RuleOption = None,
-    option: RuleChoiceOption = None,
     paths: PathsOption = None,
     error: ErrorOption = None,
     time: TimeOption = None,
@@ -79,7 +77,7 @@ def report(
     budget = Budget(paths, error, time, until_decided)
     stop = None
     if place.is_dir() and (place / MEASUREMENT_FILE).exists():
-        options = (rule, option, distance, receiver, seed, threads, set_, production or None)
+        options = (rule, distance, receiver, seed, threads, set_, production or None)
         _refuse(budget, given=any(value is not None for value in options))
         results = _kept(place)
         shown = shown or pictures_in(place)
@@ -87,7 +85,7 @@ def report(
         from lamplit.cli.measuring import Wanted, measured
 
         wanted = Wanted(
-            place, rule or (), option or (), distance, receiver, production, seed, set_ or ()
+            place, rule or (), distance, receiver, production, seed, set_ or ()
         )
         results, stop = measured(wanted, budget, threads=threads)
         results = replace(results, command=command_line(sys.argv))

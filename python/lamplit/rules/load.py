@@ -57,16 +57,24 @@ def load_rules(name: str | Path, *, root: Path | None = None) -> RuleSet:
 def find_rule(text: str, *, root: Path | None = None) -> Rule:
     """Return the rule that ``text`` names: "un-r148/S1", or "my-rules.toml/X" below ``root``.
 
+    Options may follow: "un-r148/S2?period=night&mounting=low".
+
     >>> find_rule("un-r148/S1").title
     'Stop lamp, steady (S1)'
 
     Raises:
-        RuleError: The name is not of this form, or there is no such rule.
+        RuleError: The name is not of this form, or there is no such rule, option or choice.
     """
-    name, slash, entry = text.rpartition("/")
-    if not slash or not name or not entry:
-        raise RuleError(f"{text[:60]!r} names no rule; write it as un-r148/S1 or my-rules.toml/X")
-    return load_rules(name, root=root).entry(entry)
+    path, question, tail = text.partition("?")
+    name, slash, entry = path.rpartition("/")
+    pairs = [own.partition("=") for own in tail.split("&")] if question else []
+    options = {key: choice for key, _, choice in pairs}
+    if not slash or not name or not entry or not all(options) or not all(options.values()):
+        raise RuleError(
+            f"{text[:60]!r} names no rule; write it as un-r148/S1, my-rules.toml/X or "
+            "un-r148/S2?period=night"
+        )
+    return load_rules(name, root=root).entry(entry).under(**options)
 
 
 @cache

@@ -108,6 +108,18 @@ class Rule:
             chosen[key] = str(value)
         return replace(self, options=chosen)
 
+    def where_known(self, **options: object) -> Rule:
+        """Return this rule under those of ``options`` that its set has and that are not None.
+
+        For what a scene says of a function whatever its rule: ``sections``, ``lamps``, ``side``.
+
+        Raises:
+            RuleError: The set has such an option, and no such choice.
+        """
+        known = self.rules.file.options
+        given = {key: value for key, value in options.items() if key in known and value is not None}
+        return self.under(**given)
+
     def holds(self, when: Mapping[str, str]) -> bool:
         """Return whether a requirement with this ``when`` applies under the options chosen."""
         return all(self.options[key] == choice for key, choice in when.items())
