@@ -28,6 +28,7 @@ from lamplit.cli.options import OutputOption, SceneArgument, SeedOption, SetOpti
 from lamplit.cli.overrides import command_line
 
 if TYPE_CHECKING:
+    from lamplit.engine.measurement import Measurement
     from lamplit.report.photometry.results import Results
 
 
@@ -63,17 +64,17 @@ def measure(
     from lamplit.report.photometry.files import write_measurement
     from lamplit.report.photometry.kept import MEASUREMENT_FILE
 
-    wanted = Wanted(
-        scene, rule or (), distance, receiver, production, seed, set_ or ()
-    )
+    wanted = Wanted(scene, rule or (), distance, receiver, production, seed, set_ or ())
     prepare_output(output, (MEASUREMENT_FILE,))
     budget = Budget(paths, error, time, until_decided)
-    results, stop = measured(wanted, budget, threads=threads, cross_check=cross_check)
+    results, measurement, stop = measured(wanted, budget, threads=threads)
     results = replace(results, command=command_line(sys.argv))
     files = write_measurement(results, output)
     _tell(output, results, files)
-    if not results.complete and stop.signal_number is not None:
+    if measurement.interrupted:
         raise typer.Exit(stop.exit_code)
+    if cross_check:
+        _compare(measurement)
 
 
 def _tell(output: Path, results: Results, files: dict[str, str]) -> None:
@@ -96,4 +97,41 @@ def _tell(output: Path, results: Results, files: dict[str, str]) -> None:
     console = show_table(heading, numbers, output, files)
     console.print(f"\n[dim]lamplit report {output} -o FILE.html makes one page of it[/dim]")
     if not results.complete:
-        console.print("\n[yellow]stopped before all was done; what is done is in the files[/yellow]")
+        console.print(
+            "\n[yellow]stopped before all was done; what is done is in the files[/yellow]"
+        )
+
+
+def _compare(measurement: Measurement) -> None:
+    """Print the brightest test points by both ways: walked from the light, and from the eye."""
+    from rich.console import Console
+    from rich.table import Table
+
+    from lamplit.report.photometry.style import cd
+    from lamplit.report.photometry.table import angle
+
+    console = Console(highlight=False, soft_wrap=True)
+    console.print("\n[bold]Cross-check[/bold], all light: from the light, and from the receiver\n")
+    both = measurement.cross_check()
+    table = Table(box=None, header_style="bold", pad_edge=False)
+    for heading in (
+        "H °",
+        "V °",
+        "cd from the light",
+        "2 σ",
+        "cd from the receiver",
+        "2 σ",
+        "apart",
+    ):
+        table.add_column(heading, justify="right", no_wrap=True)
+    for at, apart in enumerate(both.sigmas):
+        table.add_row(
+            angle(float(both.spot_h_deg[at])),
+            angle(float(both.spot_v_deg[at])),
+            cd(float(both.light_cd[at])),
+            f"± {2.0 * both.light_standard_error_cd[at]:.2g}",
+            cd(float(both.eye_cd[at])),
+            f"± {2.0 * both.eye_standard_error_cd[at]:.2g}",
+            f"{abs(apart):.1f} σ",
+        )
+    console.print(table)

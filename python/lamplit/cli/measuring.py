@@ -3,10 +3,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import math
+import sys
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -18,8 +20,16 @@ if TYPE_CHECKING:
     from lamplit.cli.functions import Asked
     from lamplit.cli.stopping import Stop
     from lamplit.engine.measurement import Measurement
+    from lamplit.report.photometry.progress import MeasuringProgress
     from lamplit.report.photometry.results import Results
     from lamplit.scene import Scene
+
+#: With --until-decided alone, no more paths than these: what lies on a limit is never decided.
+_MOST_UNDECIDED = 1 << 30
+#: A table of findings has this width at least: narrower ones break every line of it.
+_TABLE_WIDTH = 120
+#: What --distance says instead of a number.
+_FAR = "far"
 
 RuleOption = Annotated[
     list[str] | None,
@@ -50,13 +60,15 @@ UntilDecidedOption = Annotated[
     typer.Option(
         "--until-decided",
         help="Walk until no limit lies within 2 sigma of what was measured; --time or --paths "
-        "sets an end.",
+        "sets an end, else it is a thousand million paths.",
     ),
 ]
 DistanceOption = Annotated[
-    float | None,
+    str | None,
     typer.Option(
-        "--distance", metavar="M", help="Distance of the receiver, instead of the scene's."
+        "--distance",
+        metavar="M",
+        help="Distance of the receiver in m, or far for the far field, instead of the scene's.",
     ),
 ]
 ReceiverOption = Annotated[
@@ -84,6 +96,15 @@ class Budget:
     time_s: float | None = None
     until_decided: bool = False
 
+    @property
+    def most_paths(self) -> int | None:
+        """The most paths to walk; None for no end but the time or the error."""
+        from lamplit.engine.measure import USUAL_PATHS
+
+        if self.paths is not None or self.error is not None or self.time_s is not None:
+            return self.paths
+        return _MOST_UNDECIDED if self.until_decided else USUAL_PATHS
+
 
 @dataclass(frozen=True)
 class Wanted:
@@ -91,7 +112,7 @@ class Wanted:
 
     place: Path
     rules: Sequence[str] = ()
-    distance_m: float | None = None
+    distance: str | None = None
     receiver_deg: float | None = None
     production: bool = False
     seed: int | None = None
@@ -107,15 +128,32 @@ class Wanted:
         from lamplit.scene import load_scene
 
         changed = overrides(assignments=self.assignments, seed=self.seed)
-        own = {"measure.distance_m": self.distance_m, "measure.receiver_deg": self.receiver_deg}
-        changed |= {key: value for key, value in own.items() if value is not None}
         return load_scene(scene_file(self.place), overrides=changed)
+
+    @property
+    def distance_m(self) -> float | None:
+        """The receiver's distance, infinite for the far field; None: as the scene says.
+
+        Raises:
+            LamplitError: It is no distance.
+        """
+        if self.distance is None or self.distance == _FAR:
+            return None if self.distance is None else math.inf
+        try:
+            value = float(self.distance)
+        except ValueError:
+            value = math.nan
+        if not (math.isfinite(value) and value > 0.0):
+            raise LamplitError(
+                f"{self.distance!r} is no distance; write m such as 10, or far", where="--distance"
+            )
+        return value
 
 
 def measured(
-    wanted: Wanted, budget: Budget, *, threads: int | None = None, cross_check: bool = False
-) -> tuple[Results, Stop]:
-    """Measure what is ``wanted``, and return it with the signal that stopped it, if one did.
+    wanted: Wanted, budget: Budget, *, threads: int | None = None
+) -> tuple[Results, Measurement, Stop]:
+    """Measure what is ``wanted``; return what is shown, what was measured, and what stopped it.
 
     Raises:
         LamplitError: The scene, a rule or an option cannot be used.
@@ -132,26 +170,62 @@ def measured(
     _check(budget, functions)
     spots, grid = directions(functions)
     progress = MeasuringProgress("Measuring", time_s=budget.time_s)
-    decide = _decider(functions, production=wanted.production) if budget.until_decided else None
-
-    def until(so_far: Measurement) -> bool:
-        progress.note(so_far.relative_error)
-        return decide is not None and decide(so_far)
-
+    rounds = _Rounds(functions, budget, progress, production=wanted.production)
     with stop_signals() as stop, progress:
-        measurement = engine.measure(
-            scene,
-            spots=spots,
-            grid=grid,
-            paths=budget.paths,
-            error=budget.error,
-            time_s=budget.time_s,
-            threads=threads,
-            until=until,
-            progress=progress,
-        )
+        try:
+            measurement = engine.measure(
+                scene,
+                spots=spots,
+                grid=grid,
+                distance_m=wanted.distance_m,
+                receiver_deg=wanted.receiver_deg,
+                paths=budget.most_paths,
+                error=budget.error,
+                time_s=budget.time_s,
+                threads=threads,
+                until=rounds.are_enough,
+                progress=progress,
+            )
+        except engine.MeasureInterrupted as stopped:
+            measurement = stopped.measurement
+    if measurement.paths == 0:
+        print("stopped before the first path was done; nothing is written", file=sys.stderr)
+        raise typer.Exit(stop.exit_code)
+    if not (rounds.have_an_aim or measurement.interrupted):
+        measurement = replace(measurement, complete=True)
     results = results_of(measurement, functions, production=wanted.production)
-    return results, stop
+    return results, measurement, stop
+
+
+class _Rounds:
+    """What is asked between the rounds of a measurement: are the paths so far enough?"""
+
+    def __init__(
+        self,
+        functions: Sequence[Asked],
+        budget: Budget,
+        progress: MeasuringProgress,
+        *,
+        production: bool,
+    ) -> None:
+        self._functions, self._budget, self._production = functions, budget, production
+        self._progress = progress
+
+    @property
+    def have_an_aim(self) -> bool:
+        """Whether something else than paths or time says when it is enough."""
+        return self._budget.error is not None or self._budget.until_decided
+
+    def are_enough(self, so_far: Measurement) -> bool:
+        """Tell how certain it is so far, and return whether all is decided that can be."""
+        from lamplit.report.photometry.measured import judged_functions
+
+        self._progress.note(so_far.relative_error)
+        if not self._budget.until_decided:
+            return self._budget.error is not None
+        judged = judged_functions(so_far, self._functions, production=self._production)
+        verdicts = [one.verdict for one in judged if one.verdict is not None]
+        return all(verdict.paths_factor is None for verdict in verdicts)
 
 
 def _check(budget: Budget, functions: Sequence[Asked]) -> None:
@@ -165,20 +239,6 @@ def _check(budget: Budget, functions: Sequence[Asked]) -> None:
             "no function has a rule that could be decided; name one with --rule",
             where="--until-decided",
         )
-
-
-def _decider(
-    functions: Sequence[Asked], *, production: bool
-) -> Callable[[Measurement], bool]:
-    """Return what says whether more paths would decide nothing."""
-    from lamplit.report.photometry.measured import judged_functions
-
-    def decided(so_far: Measurement) -> bool:
-        judged = judged_functions(so_far, functions, production=production)
-        verdicts = [one.verdict for one in judged if one.verdict is not None]
-        return all(verdict.paths_factor is None for verdict in verdicts)
-
-    return decided
 
 
 def print_verdicts(console: Console, results: Results) -> None:
@@ -197,7 +257,7 @@ def print_verdicts(console: Console, results: Results) -> None:
             continue
         chosen = "" if not one.verdict.production else ", conformity of production"
         console.print(f": {escape(one.verdict.title)}, {escape(one.verdict.rule)}{chosen}\n")
-        console.print(findings_table(one))
+        console.print(findings_table(one), width=max(console.width, _TABLE_WIDTH))
     console.print()
     for one in results.functions:
         if one.verdict is not None:

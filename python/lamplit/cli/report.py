@@ -84,14 +84,12 @@ def report(
     else:
         from lamplit.cli.measuring import Wanted, measured
 
-        wanted = Wanted(
-            place, rule or (), distance, receiver, production, seed, set_ or ()
-        )
-        results, stop = measured(wanted, budget, threads=threads)
+        wanted = Wanted(place, rule or (), distance, receiver, production, seed, set_ or ())
+        results, _, stop = measured(wanted, budget, threads=threads)
         results = replace(results, command=command_line(sys.argv))
     write_bytes(output, render_page(results, shown).encode())
     _tell(results, output)
-    if stop is not None and not results.complete:
+    if stop is not None and stop.signal_number is not None:
         raise typer.Exit(stop.exit_code)
 
 

@@ -60,6 +60,11 @@ def chromaticity_covariance(xyz: Array, covariance: Array) -> tuple[Array, Array
     return xy, jacobian @ covariance @ np.swapaxes(jacobian, -1, -2)
 
 
+def chromaticity_errors(covariance: Array) -> Array:
+    """Return the standard errors (…, 2) of x and y from their covariance (…, 2, 2)."""
+    return np.sqrt(np.maximum(np.diagonal(covariance, axis1=-2, axis2=-1), 0.0))
+
+
 def ellipse_of(covariance: Array, sigmas: float = 2.0) -> Ellipse:
     """Return the ellipse (d/σ)² = ``sigmas``² of a covariance (2, 2).
 
@@ -108,7 +113,7 @@ def _lit(observed: Observed) -> Flags:
 def _draw_close_view(axes: Axes, function: FunctionResults, xy: Array, covariance: Array) -> None:
     """Draw the points once more, as large as fits, where no colour is: to the upper right."""
     lit = _lit(function.observed)
-    reach = 2.0 * np.sqrt(np.maximum(np.diagonal(covariance[lit], axis1=-2, axis2=-1), 0.0))
+    reach = 2.0 * chromaticity_errors(covariance[lit])
     low, high = (xy[lit] - reach).min(axis=0), (xy[lit] + reach).max(axis=0)
     half = max(0.6 * float((high - low).max()), 5e-5)
     if half > 0.3 * float(np.ptp(axes.get_xlim())):

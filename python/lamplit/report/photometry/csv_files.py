@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lamplit.errors import LamplitError
-from lamplit.report.photometry.colour import chromaticity_covariance
+from lamplit.report.photometry.colour import chromaticity_covariance, chromaticity_errors
 from lamplit.report.photometry.isocandela import middles
 
 if TYPE_CHECKING:
@@ -95,7 +95,7 @@ def read_grid(path: Path, shapes: Mapping[str, tuple[int, int]]) -> dict[str, tu
 def _spots(one: FunctionResults) -> Iterable[Sequence[object]]:
     seen = one.observed
     xy, covariance = chromaticity_covariance(seen.spot_xyz, seen.spot_xyz_covariance)
-    errors = np.sqrt(np.diagonal(covariance, axis1=-2, axis2=-1))
+    errors = chromaticity_errors(covariance)
     with np.errstate(divide="ignore", invalid="ignore"):
         correlation = covariance[:, 0, 1] / errors.prod(axis=-1)
     for at in range(len(seen.spot_h_deg)):

@@ -37,6 +37,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
+#: Where the label of the lowest line stands, from the right towards up, and how far on the next.
+_FIRST_LABEL_DEG, _NEXT_LABEL_DEG = -20.0, 40.0
 #: Lines at 1, 2 and 5 times powers of ten, this many at most, over so many powers.
 _MOST_LEVELS, _POWERS = 10, 3.0
 #: Cells above this share of the brightest are worth looking at.
@@ -189,11 +191,11 @@ def label_places(
 ) -> list[tuple[float, Array]]:
     """Return a level and the place of its label, for each level that has a line.
 
-    Labels stand to the right and a little below, on a line that is not much shorter than the
-    longest of its level: specks are noise.
+    Labels go round from level to level, so that those of near lines do not meet, each on a line
+    that is not much shorter than the longest of its level: specks are noise.
     """
     found: list[tuple[float, Array]] = []
-    for level, lines in zip(levels, segments, strict=True):
+    for number, (level, lines) in enumerate(zip(levels, segments, strict=True)):
         lengths = [float(np.hypot(*np.diff(line, axis=0).T).sum()) for line in lines]
         long = [
             line for line, length in zip(lines, lengths, strict=True)
@@ -201,7 +203,9 @@ def label_places(
         ]  # fmt: skip
         if long:
             places = np.concatenate(long)
-            found.append((float(level), places[int(np.argmax(places @ (0.94, -0.34)))]))
+            turn = np.radians(_FIRST_LABEL_DEG - _NEXT_LABEL_DEG * number)
+            towards = places @ (np.cos(turn), np.sin(turn))
+            found.append((float(level), places[int(np.argmax(towards))]))
     return found
 
 

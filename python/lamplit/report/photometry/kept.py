@@ -17,7 +17,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from lamplit.errors import LamplitError
 from lamplit.photometry.observed import Observed
 from lamplit.report.photometry import results as shown
-from lamplit.report.photometry.colour import chromaticity_covariance
+from lamplit.report.photometry.colour import chromaticity_covariance, chromaticity_errors
 from lamplit.report.photometry.csv_files import read_grid
 from lamplit.report.photometry.isocandela import brightest
 from lamplit.report.photometry.table import in_words
@@ -251,7 +251,7 @@ def _kept_function(one: shown.FunctionResults) -> KeptFunction:
 
 def _kept_spots(seen: Observed) -> list[KeptSpot]:
     xy, covariance = chromaticity_covariance(seen.spot_xyz, seen.spot_xyz_covariance)
-    errors = np.sqrt(np.diagonal(covariance, axis1=-2, axis2=-1))
+    errors = chromaticity_errors(covariance)
     lit = seen.spot_xyz.sum(axis=-1) > 0.0
     return [
         KeptSpot(

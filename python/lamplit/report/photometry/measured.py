@@ -120,9 +120,7 @@ def _others(
     shared = set(one.light) & set(other.light) if one.light and other.light else {""}
     if found and shared:
         groups = measurement.groups
-        light = {
-            group: max(_weight(one, group), _weight(other, group)) for group in groups
-        }
+        light = {group: max(_weight(one, group), _weight(other, group)) for group in groups}
         found["both"] = _observed(measurement, "both", light)
     return found
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from lamplit.errors import LamplitError
 from lamplit.report.photometry import table
-from lamplit.report.photometry.colour import chromaticity_covariance
+from lamplit.report.photometry.colour import chromaticity_covariance, chromaticity_errors
 from lamplit.report.photometry.plots import Plot, draw_plots
 from lamplit.report.photometry.results import tally
 from lamplit.report.photometry.style import MARKS, cd
@@ -160,7 +160,7 @@ def _on_axis(one: FunctionResults) -> dict[str, str]:
     }
     xy, covariance = chromaticity_covariance(seen.spot_xyz, seen.spot_xyz_covariance)
     if np.isfinite(xy[place]).all():
-        spread = 2.0 * np.sqrt(np.diagonal(covariance[place]))
+        spread = 2.0 * chromaticity_errors(covariance[place])
         facts["x"], facts["y"] = (
             f"{value:.4f} ± {error:.1g}" for value, error in zip(xy[place], spread, strict=True)
         )

@@ -152,7 +152,8 @@ def more_paths(finding: Finding) -> str:
         return ""
     if not np.isfinite(factor) or factor > 1e6:
         return "on the limit: no number of paths decides it"
-    return f"{factor:.2g} × as many paths would decide it"
+    digits = ".2g" if factor < 10.0 else ".0f"
+    return f"{factor:{digits}} × as many paths would decide it"
 
 
 def in_words(verdict: Verdict) -> str:
