@@ -24,6 +24,10 @@ _SECTIONS: dict[str, dict[str, str]] = {
     },
     "path": {"PathSettings": "`[path]`"},
     "hall": {"HallSettings": "`[hall]`"},
+    "measure": {
+        "MeasureSettings": "`[measure]`",
+        "LampFunction": "`[[measure.functions]]`",
+    },
     "ambient": {"Ambient": "`[ambient]`"},
     "background": {
         "ConstantBackground": "",
@@ -106,6 +110,7 @@ _FORMS = {
     "ConstantComplexIndex": "[n and k](#metals)",
     "TabulatedTransmittance": "[transmittance](#internal-transmittance)",
     "SoftBox": "soft box",
+    "LampFunction": "function",
     "Radiator": "`{ source, luminance_cd_m2 }`",
     "CustomDisplay": "a table",
     "CosineDistribution": "`{ cosine_exponent }`",

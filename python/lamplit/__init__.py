@@ -15,7 +15,15 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from lamplit._core import __version__
-    from lamplit.engine import Comparison, Image, RenderInterrupted, compare, render
+    from lamplit.engine import (
+        Comparison,
+        Image,
+        Measurement,
+        RenderInterrupted,
+        compare,
+        measure,
+        render,
+    )
     from lamplit.errors import LamplitError
     from lamplit.report.picture_files import write_picture
     from lamplit.scene import Scene, check_scene, load_scene
@@ -25,6 +33,7 @@ _HOMES = {
     "Comparison": "lamplit.engine",
     "Image": "lamplit.engine",
     "LamplitError": "lamplit.errors",
+    "Measurement": "lamplit.engine",
     "RenderInterrupted": "lamplit.engine",
     "Scene": "lamplit.scene",
     "SpectralDistribution": "lamplit.spectrum",
@@ -32,6 +41,7 @@ _HOMES = {
     "check_scene": "lamplit.scene",
     "compare": "lamplit.engine",
     "load_scene": "lamplit.scene",
+    "measure": "lamplit.engine",
     "render": "lamplit.engine",
     "write_picture": "lamplit.report.picture_files",
 }
@@ -40,6 +50,7 @@ __all__ = [
     "Comparison",
     "Image",
     "LamplitError",
+    "Measurement",
     "RenderInterrupted",
     "Scene",
     "SpectralDistribution",
@@ -47,6 +58,7 @@ __all__ = [
     "check_scene",
     "compare",
     "load_scene",
+    "measure",
     "render",
     "write_picture",
 ]

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 __all__ = [
+    "BATCHES",
     "LANES",
     "Background",
     "Emission",
@@ -19,6 +20,8 @@ __all__ = [
     "HallTerms",
     "Matter",
     "PathMethod",
+    "Photometer",
+    "Receivers",
     "Render",
     "Scene",
     "SceneBuilder",
@@ -26,6 +29,7 @@ __all__ = [
 ]
 
 __version__: Final[str]
+BATCHES: Final[int]
 LANES: Final[int]
 
 _Array: TypeAlias = NDArray[np.float64]
@@ -33,6 +37,15 @@ _Spectrum: TypeAlias = _Array
 _Triple: TypeAlias = Sequence[float]
 #: Name, material number, priority.
 _Body: TypeAlias = tuple[str, int, int]
+
+class _Lumens(TypedDict):
+    emitted: float
+    out: float
+    absorbed: dict[str, float]
+    cut_by_depth: float
+    lost: float
+    chance: float
+    gap: float
 
 class _Ledger(TypedDict):
     escaped: float
@@ -192,6 +205,18 @@ class PathMethod:
 class Scene:
     @property
     def memory_bytes(self) -> int: ...
+    @property
+    def bounds_mm(self) -> tuple[_Triple, _Triple] | None: ...
+    def look(
+        self,
+        position_mm: _Triple,
+        target_mm: _Triple,
+        up: _Triple,
+        *,
+        field_of_view_deg: float | None = None,
+        height_mm: float | None = None,
+        lens_mm: tuple[float, float] | None = None,
+    ) -> None: ...
     def render(
         self,
         width: int,
@@ -229,4 +254,72 @@ class Render:
     def layers(self) -> _Array: ...
     def layers_standard_error(self) -> _Array: ...
     def ledger(self) -> _Ledger | None: ...
+    def statistics(self) -> dict[str, Any]: ...
+
+@final
+class Receivers:
+    def __new__(
+        cls,
+        axis: _Triple,
+        up: _Triple,
+        centre_mm: _Triple,
+        *,
+        distance_mm: float | None = None,
+        spots: _Array | None = None,
+        cell_edges: tuple[_Array, _Array] | None = None,
+        map: tuple[_Triple, _Triple, _Triple, Sequence[int]] | None = None,
+        spot_bands: int = 0,
+        cell_bands: int = 0,
+    ) -> Receivers: ...
+
+@final
+class Photometer:
+    @staticmethod
+    def shining(
+        scene: Scene, receivers: Receivers, method: PathMethod, *, seed: int = 1
+    ) -> Photometer: ...
+    @staticmethod
+    def rays(
+        scene: Scene,
+        receivers: Receivers,
+        method: PathMethod,
+        positions_mm: _Array,
+        directions: _Array,
+        fluxes: _Array,
+        *,
+        spectrum: _Spectrum | None = None,
+        wavelengths: NDArray[np.uint32] | None = None,
+        step_nm: float = 1.0,
+        seed: int = 1,
+    ) -> Photometer: ...
+    @staticmethod
+    def beam(
+        scene: Scene,
+        receivers: Receivers,
+        method: PathMethod,
+        travels: _Triple,
+        angular_radius_rad: float,
+        irradiance: _Spectrum,
+        *,
+        seed: int = 1,
+    ) -> Photometer: ...
+    @property
+    def paths_per_batch(self) -> int: ...
+    def walk(
+        self,
+        more: int,
+        *,
+        time_budget_s: float | None = None,
+        threads: int = 0,
+        progress: Callable[[int, int], object] | None = None,
+    ) -> bool: ...
+    def emitted(self) -> _Array: ...
+    def out(self) -> _Array: ...
+    def spots(self) -> _Array: ...
+    def cells(self) -> _Array: ...
+    def map(self) -> _Array: ...
+    def out_bands(self) -> _Array: ...
+    def spot_bands(self) -> _Array: ...
+    def cell_bands(self) -> _Array: ...
+    def ledger(self, group: int) -> _Lumens | None: ...
     def statistics(self) -> dict[str, Any]: ...

@@ -130,16 +130,8 @@ impl SceneBuilder {
         height_mm: Option<f64>,
         lens_mm: Option<(f64, f64)>,
     ) -> PyResult<()> {
-        let projection = match (field_of_view_deg, height_mm, lens_mm) {
-            (Some(field_of_view_deg), None, None) => Projection::Pinhole { field_of_view_deg },
-            (Some(field_of_view_deg), None, Some((aperture, focus))) => {
-                Projection::ThinLens { field_of_view_deg, aperture, focus }
-            }
-            (None, Some(height), None) => Projection::Orthographic { height },
-            _ => return Err(value_error("give field_of_view_deg or height_mm, and not both")),
-        };
-        let [position, target, up] = [position_mm, target_mm, up].map(vector);
-        self.camera = Some(Camera::new(position, target, up, projection).map_err(value_error)?);
+        let view = (position_mm, target_mm, up);
+        self.camera = Some(camera(view, field_of_view_deg, height_mm, lens_mm)?);
         Ok(())
     }
 
@@ -197,6 +189,25 @@ impl SceneBuilder {
             .map(|scene| Scene::new(scene, groups))
             .map_err(value_error)
     }
+}
+
+/// A camera by its position, its target and what is up, and by what says how it projects.
+pub fn camera(
+    (position_mm, target_mm, up): (Triple, Triple, Triple),
+    field_of_view_deg: Option<f64>,
+    height_mm: Option<f64>,
+    lens_mm: Option<(f64, f64)>,
+) -> PyResult<Camera> {
+    let projection = match (field_of_view_deg, height_mm, lens_mm) {
+        (Some(field_of_view_deg), None, None) => Projection::Pinhole { field_of_view_deg },
+        (Some(field_of_view_deg), None, Some((aperture, focus))) => {
+            Projection::ThinLens { field_of_view_deg, aperture, focus }
+        }
+        (None, Some(height), None) => Projection::Orthographic { height },
+        _ => return Err(value_error("give field_of_view_deg or height_mm, and not both")),
+    };
+    let [position, target, up] = [position_mm, target_mm, up].map(vector);
+    Camera::new(position, target, up, projection).map_err(value_error)
 }
 
 fn shape(kind: &str, numbers: &[f64]) -> PyResult<Shape> {

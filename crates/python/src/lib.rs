@@ -17,7 +17,9 @@ mod builder;
 mod emission;
 mod material;
 mod outcome;
+mod photometer;
 mod render;
+mod watch;
 
 use pyo3::prelude::*;
 
@@ -35,11 +37,17 @@ mod _core {
     #[pymodule_export]
     use super::outcome::Render;
     #[pymodule_export]
+    use super::photometer::{Photometer, Receivers};
+    #[pymodule_export]
     use super::render::{HallMethod, PathMethod, Scene};
 
     /// How many wavelengths a path carries.
     #[pymodule_export]
     const LANES: usize = lamplit_core::spectrum::LANES;
+
+    /// Independent repetitions of which a photometer's walks are made.
+    #[pymodule_export]
+    const BATCHES: usize = lamplit_core::render::BATCHES;
 
     /// The version of Lamplit.
     #[pymodule_export]

@@ -3,6 +3,7 @@
 
 use lamplit_core::film::PixelSums;
 use lamplit_core::render::Rendered;
+use lamplit_core::transport::Tally;
 use numpy::{PyArray2, PyArray3, PyArray4};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -106,18 +107,7 @@ impl Render {
 
     /// The counts of the tally, and lost rays by body and cause.
     fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        const CAUSES: [&str; 4] =
-            ["left_without_entering", "entered_twice", "ended_inside", "too_many_bodies"];
-        let lost = PyDict::new(py);
-        for (name, counts) in self.body_names.iter().zip(&self.rendered.tally.lost) {
-            let by_cause = PyDict::new(py);
-            for (cause, count) in CAUSES.into_iter().zip(counts).filter(|(_, count)| **count > 0) {
-                by_cause.set_item(cause, count)?;
-            }
-            if !by_cause.is_empty() {
-                lost.set_item(name, by_cause)?;
-            }
-        }
+        let lost = lost_rays(py, &self.rendered.tally, &self.body_names)?;
         let statistics = PyDict::new(py);
         statistics.set_item("eye_rays", self.rendered.tally.eye_rays)?;
         statistics.set_item("shadow_rays", self.rendered.tally.shadow_rays)?;
@@ -130,6 +120,27 @@ impl Render {
         statistics.set_item("lost_rays", lost)?;
         Ok(statistics)
     }
+}
+
+/// How many rays were lost, by body and cause.
+pub fn lost_rays<'py>(
+    py: Python<'py>,
+    tally: &Tally,
+    body_names: &[String],
+) -> PyResult<Bound<'py, PyDict>> {
+    const CAUSES: [&str; 4] =
+        ["left_without_entering", "entered_twice", "ended_inside", "too_many_bodies"];
+    let lost = PyDict::new(py);
+    for (name, counts) in body_names.iter().zip(&tally.lost) {
+        let by_cause = PyDict::new(py);
+        for (cause, count) in CAUSES.into_iter().zip(counts).filter(|(_, count)| **count > 0) {
+            by_cause.set_item(cause, count)?;
+        }
+        if !by_cause.is_empty() {
+            lost.set_item(name, by_cause)?;
+        }
+    }
+    Ok(lost)
 }
 
 impl Render {

@@ -1,39 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0 OR MIT
 //! `Scene.render`: renders on threads of its own while Python watches and may interrupt.
 
-use std::panic::{catch_unwind, AssertUnwindSafe};
-use std::sync::atomic::Ordering;
-use std::sync::mpsc::{channel, RecvTimeoutError};
+use std::sync::{PoisonError, RwLock, RwLockReadGuard};
 use std::time::Duration;
 
-use lamplit_core::render::{
-    features, render, Method, Progress, RenderError, RenderSettings, Rendered,
-};
+use lamplit_core::render::{features, render, Method, RenderSettings};
 use lamplit_core::sampling::{PixelFilter, PixelSequence};
 use lamplit_core::scene;
 use lamplit_core::transport::{HallSettings, PathSettings};
 use numpy::PyArray3;
-use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
-use crate::arrays::shaped;
+use crate::arrays::{shaped, Triple};
+use crate::builder::camera;
 use crate::outcome::Render;
 use crate::value_error;
-
-/// How often Python is asked whether to go on.
-const WATCH_INTERVAL: Duration = Duration::from_millis(50);
+use crate::watch::watch;
 
 /// A scene ready to be rendered.
 #[pyclass(frozen, module = "lamplit._core")]
 pub struct Scene {
-    scene: scene::Scene,
-    groups: Vec<String>,
+    scene: RwLock<scene::Scene>,
+    pub groups: Vec<String>,
 }
 
 impl Scene {
     /// A scene with the names of its light groups.
     pub fn new(scene: scene::Scene, groups: Vec<String>) -> Self {
-        Self { scene, groups }
+        Self { scene: RwLock::new(scene), groups }
+    }
+
+    /// The scene, as it is seen now.
+    pub fn world(&self) -> RwLockReadGuard<'_, scene::Scene> {
+        self.scene.read().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -57,7 +56,7 @@ impl HallMethod {
 
 /// Path transport, and how its walks are spent.
 #[pyclass(frozen, module = "lamplit._core")]
-pub struct PathMethod(PathSettings);
+pub struct PathMethod(pub PathSettings);
 
 #[pymethods]
 impl PathMethod {
@@ -80,7 +79,32 @@ impl Scene {
     /// The memory of the triangles and their hierarchy, in bytes.
     #[getter]
     fn memory_bytes(&self) -> usize {
-        self.scene.memory_bytes()
+        self.world().memory_bytes()
+    }
+
+    /// The lower and the upper corner, in mm, of the box round all bodies but endless planes.
+    #[getter]
+    fn bounds_mm(&self) -> Option<(Triple, Triple)> {
+        self.world().bounds().map(|[lo, hi]| (lo.to_array(), hi.to_array()))
+    }
+
+    /// See the scene by another camera from now on, as `SceneBuilder.set_camera` says.
+    #[pyo3(signature = (
+        position_mm, target_mm, up, *, field_of_view_deg=None, height_mm=None, lens_mm=None
+    ))]
+    fn look(
+        &self,
+        position_mm: Triple,
+        target_mm: Triple,
+        up: Triple,
+        field_of_view_deg: Option<f64>,
+        height_mm: Option<f64>,
+        lens_mm: Option<(f64, f64)>,
+    ) -> PyResult<()> {
+        let view = (position_mm, target_mm, up);
+        let camera = camera(view, field_of_view_deg, height_mm, lens_mm)?;
+        self.scene.write().unwrap_or_else(PoisonError::into_inner).camera = camera;
+        Ok(())
     }
 
     /// Render samples `first_sample`..`first_sample + samples` of every pixel.
@@ -133,9 +157,10 @@ impl Scene {
             threads,
             tile,
         };
-        let (outcome, interrupted) = watch(py, &self.scene, &settings, progress.as_ref())?;
+        let (outcome, interrupted) =
+            watch(py, progress.as_ref(), |progress| render(&self.world(), &settings, progress))?;
         let rendered = outcome.map_err(value_error)?;
-        let bodies = self.scene.bodies.iter().map(|body| body.name.clone()).collect();
+        let bodies = self.world().bodies.iter().map(|body| body.name.clone()).collect();
         Ok(Render::new(rendered, bodies, self.groups.clone(), interrupted))
     }
 
@@ -149,65 +174,13 @@ impl Scene {
         height: u32,
         threads: usize,
     ) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        let found = py.detach(|| features(&self.scene, width, height, threads));
+        let found = py.detach(|| features(&self.world(), width, height, threads));
         let rows = found.map_err(value_error)?.into_iter().flat_map(|seen| {
             let ([x, y, z], [r, g, b]) = (seen.normal.to_array(), seen.albedo);
             let body = seen.body.map_or(-1.0, f64::from);
             [seen.depth, x, y, z, r, g, b, seen.interfaces, body]
         });
         shaped(py, rows.collect(), [height as usize, width as usize, 9])
-    }
-}
-
-type Outcome = Result<Rendered, RenderError>;
-
-/// Render on another thread; ask Python every now and then whether to go on.
-fn watch(
-    py: Python<'_>,
-    scene: &scene::Scene,
-    settings: &RenderSettings,
-    callback: Option<&Py<PyAny>>,
-) -> PyResult<(Outcome, bool)> {
-    let progress = Progress::default();
-    let mut interrupted = false;
-    let mut fault = None;
-    let watched = &progress;
-    let outcome = py.detach(|| {
-        let (send, receive) = channel();
-        std::thread::scope(|scope| {
-            scope.spawn(move || {
-                let result = catch_unwind(AssertUnwindSafe(|| render(scene, settings, watched)));
-                // The receiver outlives this thread, so that sending cannot fail.
-                let _ = send.send(result);
-            });
-            loop {
-                match receive.recv_timeout(WATCH_INTERVAL) {
-                    Ok(result) => return result.ok(),
-                    Err(RecvTimeoutError::Disconnected) => return None,
-                    Err(RecvTimeoutError::Timeout) if progress.is_cancelled() => {}
-                    Err(RecvTimeoutError::Timeout) => {
-                        let asked = Python::attach(|py| {
-                            py.check_signals()?;
-                            let done = progress.done.load(Ordering::Relaxed);
-                            let total = progress.total.load(Ordering::Relaxed);
-                            callback.map(|call| call.call1(py, (done, total))).transpose()
-                        });
-                        if let Err(error) = asked {
-                            interrupted = Python::attach(|py| {
-                                error.is_instance_of::<pyo3::exceptions::PyKeyboardInterrupt>(py)
-                            });
-                            fault = (!interrupted).then_some(error);
-                            progress.cancelled.store(true, Ordering::Relaxed);
-                        }
-                    }
-                }
-            }
-        })
-    });
-    match (outcome, fault) {
-        (_, Some(fault)) => Err(fault),
-        (Some(outcome), None) => Ok((outcome, interrupted)),
-        (None, None) => Err(PyRuntimeError::new_err("the renderer stopped on a fault of its own")),
     }
 }
 

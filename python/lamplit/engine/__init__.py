@@ -4,21 +4,36 @@
 from __future__ import annotations
 
 from lamplit.engine.compare import Comparison, compare
+from lamplit.engine.cross_check import CrossCheck
 from lamplit.engine.features import Features
 from lamplit.engine.image import Image
 from lamplit.engine.ledger import Ledger
+from lamplit.engine.light_sources import BeamLight, RayLight
+from lamplit.engine.lumens import LumenLedger
+from lamplit.engine.measure import MeasureInterrupted, measure
+from lamplit.engine.measurement import Measurement
 from lamplit.engine.plan import PILOT_SAMPLES, Plan, plan
+from lamplit.engine.receivers import Goniometer, Plane
 from lamplit.engine.render import RenderInterrupted, render
 
 __all__ = [
     "PILOT_SAMPLES",
+    "BeamLight",
     "Comparison",
+    "CrossCheck",
     "Features",
     "Image",
+    "Goniometer",
     "Ledger",
+    "LumenLedger",
+    "MeasureInterrupted",
+    "Measurement",
     "Plan",
+    "Plane",
+    "RayLight",
     "RenderInterrupted",
     "compare",
+    "measure",
     "plan",
     "render",
 ]

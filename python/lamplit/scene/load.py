@@ -15,6 +15,7 @@ from lamplit.files import resolve_inside
 from lamplit.scene.emission import FileDistribution
 from lamplit.scene.faults import scene_fault
 from lamplit.scene.lighting import ImageBackground
+from lamplit.scene.measuring import check_measuring
 from lamplit.scene.models import Scene
 from lamplit.scene.objects import MeshObject
 from lamplit.scene.references import check_references
@@ -63,6 +64,7 @@ def _parsed(written: Mapping[str, object], *, root: Path, path: Path | None) -> 
     scene.place(root, path)
     try:
         check_references(scene)
+        check_measuring(scene)
         _check_files(scene)
     except LamplitError as fault:
         raise type(fault)(fault.message, file=path or fault.file, where=fault.where) from fault

@@ -15,6 +15,7 @@ from lamplit.materials.finish import check_texture
 from lamplit.scene.camera import Camera, DisplaySettings, ImageSettings
 from lamplit.scene.fields import Name, Table
 from lamplit.scene.lighting import BLACK, Ambient, Background, Light
+from lamplit.scene.measuring import MeasureSettings
 from lamplit.scene.methods import HallSettings, PathSettings
 from lamplit.scene.objects import Object
 from lamplit.scene.ray_files import RayFile, ResolvedRays
@@ -79,6 +80,9 @@ class Scene(Table):
     background: Background = Field(default=BLACK, description="what rays meet that leave the scene")
     lights: Annotated[tuple[Light, ...], Field(strict=False, max_length=1000)] = Field(
         default=(), description="what makes highlights and shadows"
+    )
+    measure: MeasureSettings | None = Field(
+        default=None, description="the lamp's axis, its functions, and how it is measured"
     )
     sources: dict[Name, SourceSpec] = Field(
         default_factory=dict[str, Any], description="spectra of light by name"

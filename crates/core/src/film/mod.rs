@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0 OR MIT
-//! [`Film`]: what every pixel has gathered, as sums in the order of its samples.
+//! [`Film`]: what every pixel has gathered, as sums in the order of its samples; and
+//! [`Receivers`], where flux is caught that leaves a scene.
+
+mod receivers;
 
 use crate::spectrum::{SampledSpectrum, SampledWavelengths, LANES};
+
+pub use receivers::{DirectionCells, GroupSums, PlaneMap, Receivers, Spot, Spots, Xyz};
 
 /// The sums of one pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0 OR MIT
 //! [`AngularLaw`]: how an emitter's radiance depends on direction.
 
+mod sampling;
+
 use std::f64::consts::{PI, TAU};
 
 use thiserror::Error;
 
 use crate::math::{DMat3, DVec3};
+use sampling::DirectionCells;
 
 /// How an emitter's radiance depends on direction, as a factor of its own radiance.
 #[derive(Clone, Debug)]
@@ -165,6 +168,8 @@ pub struct IntensityTable {
     to_table: DMat3,
     intensity: DirectionGrid,
     projected: ProjectedArea,
+    /// To draw directions.
+    cells: DirectionCells,
     scale: f64,
     reached: f64,
 }
@@ -190,7 +195,8 @@ impl IntensityTable {
         } else {
             ProjectedArea::Grid(tabulate(&area_vectors, frame))
         };
-        let mut table = Self { to_table, intensity, projected, scale: 1.0, reached: 1.0 };
+        let cells = DirectionCells::new(&intensity).ok_or(IntensityError::Dark)?;
+        let mut table = Self { to_table, intensity, projected, cells, scale: 1.0, reached: 1.0 };
         let (emitted, wanted) = table.totals();
         if emitted.is_nan() || emitted <= 0.0 {
             return Err(IntensityError::Dark);

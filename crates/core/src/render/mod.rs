@@ -4,6 +4,7 @@
 mod allocation;
 mod features;
 mod pass;
+mod photometer;
 mod settings;
 
 use std::ops::Range;
@@ -19,6 +20,7 @@ use allocation::{Allocation, Pilot};
 use pass::Pass;
 
 pub use features::{features, Features};
+pub use photometer::{Batch, MeasureError, Photometer, BATCHES};
 pub use settings::{Method, RenderSettings, DEEPEST};
 
 /// Where a rendering stands, shared with whoever watches it.

@@ -91,6 +91,13 @@ impl PixelSampler {
         DVec2::new(self.sobol(2), self.sobol(3))
     }
 
+    /// The first four numbers, those of [`pixel`](Self::pixel) and [`lens`](Self::lens) of a walk from
+    /// the eye: for a walk that starts elsewhere.
+    pub fn first_4d(&self) -> [f64; 4] {
+        let (index, seed) = self.point(0);
+        sobol_burley::sample_4d(index, 0, seed).map(f64::from)
+    }
+
     /// The next two numbers, uniform in the unit square.
     pub fn next_2d(&mut self) -> DVec2 {
         let first = self.dimension;

@@ -112,6 +112,17 @@ impl Scene {
         let face = |is_entered: bool| move |body: BodyId| Face { body, is_entered };
         entered.map(face(true)).or(from.map(face(false)))
     }
+
+    /// [`interface`](Self::interface), but of two bodies that touch, one left and one entered, always
+    /// the one that would fill both places: whichever way light goes, it meets the same finish.
+    pub fn reversible_interface(&self, here: &Interior, beyond: &Interior) -> Option<Face> {
+        let face = self.interface(here, beyond)?;
+        let left = here.filling(&self.bodies).filter(|body| !beyond.bodies().contains(body));
+        let rank = |body: BodyId| (self.bodies[body as usize].priority, body);
+        let ranks_higher = |body: &BodyId| face.is_entered && rank(*body) > rank(face.body);
+        let other = left.filter(ranks_higher).map(|body| Face { body, is_entered: false });
+        Some(other.unwrap_or(face))
+    }
 }
 
 impl Interior {

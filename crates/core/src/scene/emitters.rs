@@ -80,6 +80,17 @@ impl Emitters {
         self.of_body.get(body as usize).copied().flatten()
     }
 
+    /// An emitter chosen by its luminous flux for `u` uniform in [0, 1), and where in its share `u`
+    /// lies: again uniform. `None` where nothing shines.
+    pub fn choose(&self, u: f64) -> Option<(usize, f64)> {
+        self.by_flux.as_ref().map(|by_flux| by_flux.pick(u))
+    }
+
+    /// How often [`choose`](Self::choose) chooses it.
+    pub fn probability(&self, emitter: usize) -> f64 {
+        self.by_flux.as_ref().map_or(0.0, |by_flux| by_flux.probability(emitter))
+    }
+
     /// A point on one of the emitters for `u` uniform in the unit cube; `None` where the point that
     /// was chosen faces away from `from`, and its light cannot arrive.
     pub fn sample(&self, from: DVec3, [u, v, w]: [f64; 3]) -> Option<EmitterSample> {

@@ -204,6 +204,14 @@ impl Scene {
         self.primitives.iter().any(|(primitive, id)| *id == body && primitive.is_closed())
     }
 
+    /// The box round all bodies but endless planes; `None` without any.
+    pub fn bounds(&self) -> Option<[DVec3; 2]> {
+        let meshes = self.triangles.as_ref().and_then(Triangles::bounds);
+        let primitives = self.primitives.iter().filter_map(|(primitive, _)| primitive.bounds());
+        let all = meshes.into_iter().chain(primitives.map(|(lo, hi)| [lo, hi]));
+        all.reduce(|[lo, hi], [from, to]| [lo.min(from), hi.max(to)])
+    }
+
     /// The memory that the triangles and their BVH hold, in bytes.
     pub fn memory_bytes(&self) -> usize {
         let normals = self

@@ -49,8 +49,8 @@ impl Ledger {
         Self { absorbed: vec![0; bodies], ..Self::default() }
     }
 
-    pub(super) fn start(&mut self) {
-        self.started += units(1.0);
+    pub(super) fn start(&mut self, weight: f64) {
+        self.started += units(weight);
     }
 
     pub(super) fn escape(&mut self, weight: f64) {
@@ -89,6 +89,11 @@ impl Ledger {
         }
     }
 
+    /// The weight that all walks started with.
+    pub fn started(&self) -> f64 {
+        self.started as f64 * UNIT
+    }
+
     /// The shares of all walks; `None` where nothing was walked.
     pub fn balance(&self) -> Option<Balance> {
         let share = |entry: &i128| *entry as f64 / self.started as f64;
@@ -114,7 +119,7 @@ mod tests {
     fn what_starts_is_found_again_under_its_entries() {
         let mut ledger = Ledger::new(2);
         for _ in 0..3 {
-            ledger.start();
+            ledger.start(1.0);
         }
         ledger.absorb(1, 1.0, 0.3);
         ledger.escape(0.3);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 OR MIT
-//! How light finds its way from the scene to the eye.
+//! How light finds its way from the scene to the eye, and from what shines to where it leaves.
 
+mod flux;
 mod gathered;
 mod hall;
 mod ledger;
@@ -9,8 +10,9 @@ mod path;
 mod shadow;
 mod tally;
 
+pub use flux::{Beam, FluxError, LightSource, LightWalk, Parted, RaySet, Shining};
 pub use gathered::Gathered;
 pub use hall::{HallSettings, HallWalk};
 pub use ledger::{Balance, Ledger};
-pub use path::{PathSettings, PathWalk};
+pub use path::{Leaving, PathSettings, PathWalk};
 pub use tally::Tally;

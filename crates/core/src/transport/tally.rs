@@ -7,7 +7,7 @@ use crate::scene::{BodyId, LostRay};
 /// Counts of rays and of what was left out. Sums of integers, so that their order is free.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
-    /// Segments of walks from the eye.
+    /// Segments of walks from the eye, or from a light.
     pub eye_rays: u64,
     /// Segments towards lights.
     pub shadow_rays: u64,

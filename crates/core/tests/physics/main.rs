@@ -6,15 +6,21 @@
 #[cfg(test)]
 mod background;
 #[cfg(test)]
+mod both_ways;
+#[cfg(test)]
 mod common;
 #[cfg(test)]
 mod dispersion;
 #[cfg(test)]
 mod emitters;
 #[cfg(test)]
+mod forward;
+#[cfg(test)]
 mod furnace;
 #[cfg(test)]
 mod glass;
+#[cfg(test)]
+mod goniometer;
 #[cfg(test)]
 mod measure;
 #[cfg(test)]

@@ -77,6 +77,11 @@ impl SampledSurface {
         Some(Self { form, error: primitive.largest_error() })
     }
 
+    /// How far, in mm, its points may be from where the intersection routines see the surface.
+    pub fn error(&self) -> f64 {
+        self.error
+    }
+
     /// Its area, in mm².
     pub fn area(&self) -> f64 {
         match &self.form {

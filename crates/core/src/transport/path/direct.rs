@@ -12,6 +12,7 @@ use crate::scene::BodyId;
 use crate::spectrum::SampledSpectrum;
 
 use super::branch::{Branch, CameBy};
+use super::purpose::Purpose;
 use super::vertex::Vertex;
 use super::{Meeting, PathWalk};
 
@@ -22,12 +23,18 @@ const MOST_SURFACES: usize = 256;
 const SAME_POINT: f64 = 1e-5;
 
 impl PathWalk<'_> {
-    /// Add what the background sends against a branch that leaves the scene.
-    pub(super) fn see_background(&mut self, branch: &Branch) {
-        let (scene, wavelengths, gathered) = (self.scene, self.wavelengths, &mut *self.gathered);
-        scene.background.arriving(&branch.ray, wavelengths, |group, radiance| {
-            gathered.add(scene, wavelengths, group, branch.throughput * radiance);
-        });
+    /// Add what the background sends against a branch that leaves the scene, or hand on what it
+    /// carries.
+    pub(super) fn leave(&mut self, branch: &Branch) {
+        let (scene, wavelengths) = (self.scene, self.wavelengths);
+        match &mut self.purpose {
+            Purpose::Eye(gathered) => {
+                scene.background.arriving(&branch.ray, wavelengths, |group, radiance| {
+                    gathered.add(scene, wavelengths, group, branch.throughput * radiance);
+                });
+            }
+            Purpose::Light(leaving) => leaving(&branch.ray, branch.throughput),
+        }
     }
 
     /// Add what the surface at the end of a branch emits: `L_e`.
@@ -35,6 +42,9 @@ impl PathWalk<'_> {
         let Some(number) = self.scene.emitters.of_body(meeting.hit.body) else {
             return;
         };
+        if !self.purpose.looks_for_light() {
+            return;
+        }
         let emitters = &self.scene.emitters;
         let emitter = emitters.get(number);
         let normal = meeting.hit.point.normal;
@@ -51,8 +61,13 @@ impl PathWalk<'_> {
                 pdf / (pdf + other)
             }
         };
-        let arriving = branch.throughput * emitted * weight;
-        self.gathered.add(self.scene, self.wavelengths, emitter.group, arriving);
+        self.add_light(emitter.group, branch.throughput * emitted * weight);
+    }
+
+    fn add_light(&mut self, group: usize, arriving: SampledSpectrum) {
+        if let Purpose::Eye(gathered) = &mut self.purpose {
+            gathered.add(self.scene, self.wavelengths, group, arriving);
+        }
     }
 
     /// Turn a branch at a vertex: ∫ f L |cos θ| dω by one direction and one look at the emitters.
@@ -60,9 +75,8 @@ impl PathWalk<'_> {
         let lanes = self.lanes(branch.throughput);
         self.see_emitters(&mut branch, vertex, &lanes);
         let [technique, u, v, w] = branch.sampler.next_4d();
-        let background = &self.scene.background;
-        let drawn = if technique < background.aim_share(vertex.position) {
-            background.aim(vertex.position, [u, v, w])
+        let drawn = if technique < self.aim_share(vertex) {
+            self.scene.background.aim(vertex.position, [u, v, w])
         } else {
             vertex.sample(&lanes, [u, v, w])
         };
@@ -82,13 +96,21 @@ impl PathWalk<'_> {
         (pdf > 0.0).then_some(branch)
     }
 
+    /// How often `scatter` draws a direction towards what is bright in the background.
+    fn aim_share(&self, vertex: &Vertex<'_>) -> f64 {
+        if self.purpose.looks_for_light() {
+            self.scene.background.aim_share(vertex.position)
+        } else {
+            0.0
+        }
+    }
+
     /// The density of the directions that `scatter` draws, per steradian; `own` is the vertex's own.
     fn mixed(&self, vertex: &Vertex<'_>, wo: DVec3, own: f64) -> f64 {
-        let background = &self.scene.background;
-        let share = background.aim_share(vertex.position);
+        let share = self.aim_share(vertex);
         if share > 0.0 {
             let ray = Ray::endless(vertex.position, wo);
-            (1.0 - share) * own + share * background.aim_pdf(&ray)
+            (1.0 - share) * own + share * self.scene.background.aim_pdf(&ray)
         } else {
             own
         }
@@ -97,7 +119,8 @@ impl PathWalk<'_> {
     /// Add what one point of the emitters sends straight to a vertex.
     fn see_emitters(&mut self, branch: &mut Branch, vertex: &Vertex<'_>, lanes: &SampledSpectrum) {
         let emitters = &self.scene.emitters;
-        if emitters.is_empty() || branch.depth >= self.settings.max_depth {
+        let is_looked_for = self.purpose.looks_for_light() && !emitters.is_empty();
+        if !is_looked_for || branch.depth >= self.settings.max_depth {
             return;
         }
         let [u, v, w, _] = branch.sampler.next_4d();
@@ -117,8 +140,7 @@ impl PathWalk<'_> {
         let emitted = if emitter.per_n2 { emitted / (index * index) } else { emitted };
         let other = self.mixed(vertex, seen.direction, vertex.pdf(seen.direction, lanes));
         let arriving = branch.throughput * answer * transmitted * emitted;
-        let arriving = arriving * (1.0 / (seen.pdf + other));
-        self.gathered.add(self.scene, self.wavelengths, emitter.group, arriving);
+        self.add_light(emitter.group, arriving * (1.0 / (seen.pdf + other)));
     }
 
     /// The transmittance of the straight way to a point of an emitter, and the index of the medium

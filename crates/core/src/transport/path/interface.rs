@@ -20,7 +20,9 @@ impl PathWalk<'_> {
     ) -> Ways {
         let eta = self.index(&beyond) / self.index(&branch.interior);
         let material = self.scene.material_of(face.body);
-        let roughness = material.roughness_at(meeting.hit.point.normal);
+        // Outward from that body, whichever of the faces in this place was met first.
+        let outward = if face.is_entered { meeting.side() } else { -meeting.side() };
+        let roughness = material.roughness_at(meeting.hit.point.normal * outward);
         if roughness.is_some() {
             let bsdf = Bsdf::interface(eta, roughness);
             let vertex = Vertex::on_interface(meeting, bsdf, branch.interior, beyond);

@@ -35,7 +35,7 @@ impl PathWalk<'_> {
             let lanes = self.lanes(branch.throughput);
             let [u, v, ..] = branch.sampler.next_4d();
             let free = -(1.0 - v).ln() / coefficient.0[pick(&lanes, u)];
-            let before = self.weight(branch.throughput);
+            let before = self.worth(branch.throughput);
             if free < length {
                 distance = free;
                 let density = coefficient * coefficient.transmittance(distance);
@@ -46,11 +46,11 @@ impl PathWalk<'_> {
                 let through = coefficient.transmittance(distance);
                 branch.throughput *= through * (1.0 / lanes.dot(through));
             }
-            self.tally.ledger.chance(before, self.weight(branch.throughput));
+            self.tally.ledger.chance(before, self.worth(branch.throughput));
         }
-        let before = self.weight(branch.throughput);
+        let before = self.worth(branch.throughput);
         branch.throughput *= medium.absorption.at(self.wavelengths).transmittance(distance);
-        self.tally.ledger.absorb(body, before, self.weight(branch.throughput));
+        self.tally.ledger.absorb(body, before, self.worth(branch.throughput));
         scattered
     }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 OR MIT
-//! Unbiased spectral path transport: the rendering equation, walked from the eye.
+//! Unbiased spectral path transport: the rendering equation, walked from the eye or from a light.
 //!
 //! Per lane, the basic radiance L/n² that arrives at the eye along a ray of length s is
 //!
@@ -11,6 +11,11 @@
 //! term. Integrals are sampled; the two ways on at a smooth surface are a sum, and are both followed
 //! while that matters to the pixel.
 //!
+//! A walk from a light goes the same ways by the same rules, and carries flux: a surface's answer
+//! keeps energy, and n(wi)² f(wi, wo) = n(wo)² f(wo, wi), so that the share of the radiance from wo
+//! that goes to wi is also the share of the flux from wi that goes to wo. What differs is where it
+//! starts, and that it looks for nothing: what leaves the scene is handed on ([`Purpose`]).
+//!
 //! Source: J. Kajiya, "The Rendering Equation", SIGGRAPH 1986; E. Veach, *Robust Monte Carlo
 //! Methods for Light Transport Simulation*, 1997 (multiple importance sampling, ch. 9; roulette and
 //! splitting, ch. 10); A. Wilkie et al., "Hero Wavelength Spectral Sampling", EGSR 2014.
@@ -19,6 +24,7 @@ mod branch;
 mod direct;
 mod interface;
 mod medium;
+mod purpose;
 mod vertex;
 
 use crate::math::Ray;
@@ -31,7 +37,10 @@ use super::meeting::Meeting;
 use super::tally::Tally;
 use branch::{Branch, Ways};
 use medium::Scattered;
+use purpose::Purpose;
 use vertex::Vertex;
+
+pub use purpose::Leaving;
 
 /// How the walks are spent. None of these changes what the picture tends to, but `max_depth`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,8 +60,10 @@ pub struct PathWalk<'a> {
     wavelengths: SampledWavelengths,
     /// How much each lane matters to the eye: the sum of its colour-matching functions; together 1.
     visibility: SampledSpectrum,
+    /// How much of a lane's throughput the ledger books.
+    booked: SampledSpectrum,
     tally: &'a mut Tally,
-    gathered: &'a mut Gathered,
+    purpose: Purpose<'a>,
     pending: Vec<Branch>,
 }
 
@@ -82,22 +93,46 @@ impl<'a> PathWalk<'a> {
         start: (Ray, Interior),
     ) {
         let visibility = scene.visibility.at(wavelengths);
-        let pending = vec![Branch::from_eye(start, sampler)];
-        let mut walk = Self { scene, settings, wavelengths, visibility, tally, gathered, pending };
-        walk.tally.ledger.start();
-        while let Some(branch) = walk.pending.pop() {
-            walk.follow(branch);
+        let (booked, pending) = (visibility, vec![Branch::from_eye(start, sampler)]);
+        let purpose = Purpose::Eye(gathered);
+        Self { scene, settings, wavelengths, visibility, booked, tally, purpose, pending }.run();
+    }
+
+    /// Carry `flux` from where `start` begins, and hand on what leaves the scene. The weights of
+    /// roulette are those of `flux`; `booked` is how much of each lane the ledger books.
+    #[expect(clippy::too_many_arguments, reason = "as the walk from the eye, and what it carries")]
+    pub fn carry(
+        scene: &'a Scene,
+        settings: PathSettings,
+        wavelengths: SampledWavelengths,
+        sampler: PixelSampler,
+        tally: &'a mut Tally,
+        leaving: &'a mut Leaving<'a>,
+        start: (Ray, Interior),
+        (flux, booked): (SampledSpectrum, SampledSpectrum),
+    ) {
+        let visibility = scene.visibility.at(wavelengths);
+        let pending = vec![Branch { throughput: flux, ..Branch::from_eye(start, sampler) }];
+        let purpose = Purpose::Light(leaving);
+        Self { scene, settings, wavelengths, visibility, booked, tally, purpose, pending }.run();
+    }
+
+    fn run(mut self) {
+        let started = self.pending.iter().map(|branch| self.worth(branch.throughput)).sum();
+        self.tally.ledger.start(started);
+        while let Some(branch) = self.pending.pop() {
+            self.follow(branch);
         }
     }
 
     /// One segment, and the light and the ways on at its end.
     fn follow(&mut self, mut branch: Branch) {
         let event = self.next_event(&mut branch);
-        let before = self.weight(branch.throughput);
+        let before = self.worth(branch.throughput);
         match event {
             Event::Lost => {}
             Event::Escape => {
-                self.see_background(&branch);
+                self.leave(&branch);
                 self.tally.ledger.escape(before);
             }
             Event::Scattering(at) => {
@@ -154,7 +189,7 @@ impl<'a> PathWalk<'a> {
             // So that no defect makes an endless walk.
             branch.depth += u32::from(lost.is_some());
             if branch.depth > self.settings.max_depth {
-                self.tally.ledger.lose(self.weight(branch.throughput));
+                self.tally.ledger.lose(self.worth(branch.throughput));
                 return Event::Lost;
             }
         }
@@ -162,13 +197,13 @@ impl<'a> PathWalk<'a> {
 
     /// The face at which light turns: where matter changes, unless its index is the same on all lanes.
     fn boundary(&self, here: &Interior, beyond: &Interior) -> Option<Face> {
-        let face = self.scene.interface(here, beyond)?;
+        let face = self.scene.reversible_interface(here, beyond)?;
         (self.index(here) != self.index(beyond)).then_some(face)
     }
 
     fn lose(&mut self, branch: &Branch, body: BodyId, cause: LostRay) -> Event {
         self.tally.lose(body, cause);
-        self.tally.ledger.lose(self.weight(branch.throughput));
+        self.tally.ledger.lose(self.worth(branch.throughput));
         Event::Lost
     }
 
@@ -180,11 +215,12 @@ impl<'a> PathWalk<'a> {
             if weight <= 0.0 {
                 continue;
             }
-            after += weight;
+            let worth = self.worth(branch.throughput);
+            after += worth;
             branch.depth += 1;
             if branch.depth > self.settings.max_depth {
                 self.tally.cut_by_depth += 1;
-                self.tally.ledger.cut(weight);
+                self.tally.ledger.cut(worth);
             } else if self.survives(&mut branch, weight) {
                 self.pending.push(branch);
             }
@@ -203,7 +239,8 @@ impl<'a> PathWalk<'a> {
         }
         let [u, ..] = branch.sampler.next_4d();
         let lives = u < chance;
-        self.tally.ledger.chance(weight, if lives { weight / chance } else { 0.0 });
+        let worth = self.worth(branch.throughput);
+        self.tally.ledger.chance(worth, if lives { worth / chance } else { 0.0 });
         branch.throughput *= 1.0 / chance;
         lives
     }
@@ -232,6 +269,11 @@ impl<'a> PathWalk<'a> {
     /// The share of the light that the eye sees of what a throughput carries.
     fn weight(&self, throughput: SampledSpectrum) -> f64 {
         throughput.dot(self.visibility)
+    }
+
+    /// What the ledger books of a throughput.
+    fn worth(&self, throughput: SampledSpectrum) -> f64 {
+        throughput.dot(self.booked)
     }
 
     /// How probable each lane is to be chosen, by what the eye gets of it; together 1.

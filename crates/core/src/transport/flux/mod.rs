@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0 OR MIT
+//! Forward transport: flux, walked from what sends it out to where it leaves the scene.
+//!
+//! The flux Φ = ∫∫ L cos θ dω dA of a source is an integral over places and directions. A walk
+//! draws one of each and carries Φ's integrand over the density of that draw ([`LightSource`]), on
+//! 16 lanes at once, by the same steps as a walk from the eye ([`PathWalk::carry`]). What leaves the
+//! scene goes to whoever receives it; the mean over walks is the flux there.
+//!
+//! Source: E. Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, ch. 4 and 5.
+
+mod beam;
+mod rays;
+mod shining;
+
+use thiserror::Error;
+
+use super::ledger::Ledger;
+use super::path::{PathSettings, PathWalk};
+use super::tally::Tally;
+use crate::math::Ray;
+use crate::sampling::PixelSampler;
+use crate::scene::{BodyId, Interior, Scene};
+use crate::spectrum::{SampledSpectrum, SampledWavelengths};
+
+pub use beam::Beam;
+pub use rays::RaySet;
+pub use shining::Shining;
+
+/// Why no light can be walked.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum FluxError {
+    /// Nothing shines, or nothing that the eye sees.
+    #[error("nothing sends out any visible flux")]
+    NoFlux,
+    /// Rays that cannot be used.
+    #[error("ray {ray}: {fault}")]
+    Ray {
+        /// Its number.
+        ray: usize,
+        /// Why.
+        fault: &'static str,
+    },
+    /// Arrays of a ray set that do not belong together.
+    #[error("{what} has {count} entries for {rays} rays")]
+    Count {
+        /// Which array.
+        what: &'static str,
+        /// Its length.
+        count: usize,
+        /// How many rays there are.
+        rays: usize,
+    },
+    /// A beam without a direction or a size.
+    #[error("a beam needs a direction, an angular radius from 0 to 90° and a body to meet")]
+    Beam,
+}
+
+/// Where a walk begins, and what it carries there.
+pub(super) struct Departure {
+    ray: Ray,
+    /// The bodies that the ray starts in, or the opaque body that it is stuck in.
+    interior: Result<Interior, BodyId>,
+    wavelengths: SampledWavelengths,
+    /// The spectral flux in W/nm, over the density of the draw.
+    flux: SampledSpectrum,
+    group: usize,
+}
+
+/// What sends light out.
+pub enum LightSource {
+    /// The bodies that shine.
+    Shining(Shining),
+    /// Given rays.
+    Rays(RaySet),
+    /// Parallel light from outside.
+    Beam(Beam),
+}
+
+impl From<Shining> for LightSource {
+    fn from(shining: Shining) -> Self {
+        Self::Shining(shining)
+    }
+}
+
+impl LightSource {
+    /// How many light groups its light is counted to.
+    pub fn groups(&self, scene: &Scene) -> usize {
+        match self {
+            Self::Shining(_) => scene.groups,
+            Self::Rays(_) | Self::Beam(_) => 1,
+        }
+    }
+
+    /// The tristimulus values X, Y, Z of the flux of each light group; Y in lm.
+    pub fn flux(&self, scene: &Scene) -> Vec<[f64; 3]> {
+        match self {
+            Self::Shining(shining) => shining.flux(scene),
+            Self::Rays(rays) => vec![rays.flux(scene)],
+            Self::Beam(beam) => vec![beam.flux(scene)],
+        }
+    }
+
+    fn depart(&self, scene: &Scene, sampler: &mut PixelSampler) -> Option<Departure> {
+        match self {
+            Self::Shining(shining) => shining.depart(scene, sampler),
+            Self::Rays(rays) => rays.depart(scene, sampler),
+            Self::Beam(beam) => Some(beam.depart(scene, sampler)),
+        }
+    }
+}
+
+/// A part of a walk's flux that leaves the scene.
+pub struct Parted<'r> {
+    /// Along which ray.
+    pub ray: &'r Ray,
+    /// The light group that it is counted to.
+    pub group: usize,
+    /// On which wavelengths.
+    pub wavelengths: SampledWavelengths,
+    /// The spectral flux in W/nm.
+    pub flux: SampledSpectrum,
+}
+
+/// Walks of one source's light through a scene.
+pub struct LightWalk<'a> {
+    scene: &'a Scene,
+    source: &'a LightSource,
+    settings: PathSettings,
+    /// The flux, as the eye weighs it by X + Y + Z, of a usual walk: roulette goes by shares of it.
+    usual: f64,
+    luminous_flux: f64,
+}
+
+impl<'a> LightWalk<'a> {
+    /// Make ready to walk.
+    ///
+    /// # Errors
+    /// There is no visible flux.
+    pub fn new(
+        scene: &'a Scene,
+        source: &'a LightSource,
+        settings: PathSettings,
+    ) -> Result<Self, FluxError> {
+        let [x, y, z] = source
+            .flux(scene)
+            .into_iter()
+            .fold([0.0; 3], |sum, own| [0, 1, 2].map(|i| sum[i] + own[i]));
+        // `visibility` is X + Y + Z of the lane, scaled to a sum of 1 in each phase.
+        let scale = [0, 1, 2].map(|i| {
+            let table = &scene.colour_matching[i];
+            table.at(SampledWavelengths { phase: 0 }).dot(SampledSpectrum::ONE)
+        });
+        let usual = (x + y + z) / scale.iter().sum::<f64>();
+        let sound = y.is_finite() && y > 0.0 && usual.is_finite() && usual > 0.0;
+        sound
+            .then_some(Self { scene, source, settings, usual, luminous_flux: y })
+            .ok_or(FluxError::NoFlux)
+    }
+
+    /// The luminous flux of all groups in lm: the unit of the ledgers.
+    pub fn luminous_flux(&self) -> f64 {
+        self.luminous_flux
+    }
+
+    /// Walk once, and hand on what leaves the scene. The ledger of the walk's light group, of which
+    /// `ledgers` has one each, books luminous flux in units of [`luminous_flux`](Self::luminous_flux).
+    pub fn walk(
+        &self,
+        mut sampler: PixelSampler,
+        tally: &mut Tally,
+        ledgers: &mut [Ledger],
+        receive: &mut dyn FnMut(&Parted<'_>),
+    ) {
+        let scene = self.scene;
+        let Some(departure) = self.source.depart(scene, &mut sampler) else {
+            return;
+        };
+        let Departure { ray, interior, wavelengths, flux, group } = departure;
+        let luminosity = scene.colour_matching[1].at(wavelengths);
+        let booked = luminosity * (self.usual / self.luminous_flux);
+        let carried = flux * (1.0 / self.usual);
+        std::mem::swap(&mut tally.ledger, &mut ledgers[group]);
+        match interior {
+            Err(body) => {
+                let weight = carried.dot(booked);
+                tally.ledger.start(weight);
+                tally.ledger.absorb(body, weight, 0.0);
+            }
+            Ok(interior) => {
+                let usual = self.usual;
+                let mut leaving = |ray: &Ray, left: SampledSpectrum| {
+                    receive(&Parted { ray, group, wavelengths, flux: left * usual });
+                };
+                let (settings, start) = (self.settings, (ray, interior));
+                let carried = (carried, booked);
+                PathWalk::carry(
+                    scene,
+                    settings,
+                    wavelengths,
+                    sampler,
+                    tally,
+                    &mut leaving,
+                    start,
+                    carried,
+                );
+            }
+        }
+        std::mem::swap(&mut tally.ledger, &mut ledgers[group]);
+    }
+}
