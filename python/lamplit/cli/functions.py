@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -12,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lamplit.errors import LamplitError, nearest_name
-from lamplit.rules import Rule, find_rule
+from lamplit.rules import GridNeed, Rule, find_rule
 
 if TYPE_CHECKING:
     from lamplit.scene import Scene
@@ -23,7 +24,7 @@ Array = NDArray[np.float64]
 #: What a lamp is called that is measured with all its light and without functions.
 ALL_LIGHT = "all light"
 #: The grid where no rule asks for one: H and V in degrees, and the size of its cells.
-_GRID = ((-45.0, 45.0), (-15.0, 15.0), 1.0)
+_GRID = GridNeed((-45.0, 45.0), (-15.0, 15.0), 1.0)
 #: The function that a rule is named for, before the first "=": RULE has one in its options only.
 _FOR_FUNCTION = re.compile(r"([^=/?]+)=(.+)")
 
@@ -67,31 +68,29 @@ def asked_functions(scene: Scene, *, rules: Sequence[str] = ()) -> tuple[Asked, 
 def directions(functions: Sequence[Asked]) -> tuple[Array, tuple[Array, Array]]:
     """Return all that must be measured: H and V of spots (p, 2), and the borders of the grid.
 
-    HV is always among the spots. The grid covers what every rule asks for, with the finest cells
-    that one asks for, and reaches from one half of a cell to the next, so that 0 is a border.
+    HV is always among the spots. The grid covers what all rules ask for, with the finest cells
+    that one asks for, and 0 is a border of cells.
     """
     spots = [(0.0, 0.0)]
-    needs = []
+    needs: list[GridNeed] = []
     for one in functions:
         if one.rule is not None:
             spots += zip(*(axis.tolist() for axis in one.rule.spots()), strict=True)
             needs.append(one.rule.field())
-    if not needs:
-        needs = [_GRID]
-    cell = min(need[2] for need in needs)
-    edges = tuple(
-        _edges(min(need[axis][0] for need in needs), max(need[axis][1] for need in needs), cell)
-        for axis in (0, 1)
-    )
-    return np.array(list(dict.fromkeys(spots))), (edges[0], edges[1])
+    needs = needs or [_GRID]
+    cell = min(need.cell_deg for need in needs)
+    h = _edges([need.h_deg for need in needs], cell)
+    v = _edges([need.v_deg for need in needs], cell)
+    return np.array(list(dict.fromkeys(spots))), (h, v)
 
 
-def _edges(low: float, high: float, cell: float) -> Array:
-    """Return borders that are whole cells away from 0 and cover ``low`` to ``high``."""
-    first, last = np.floor(low / cell + 1e-9), np.ceil(high / cell - 1e-9)
+def _edges(ranges: Sequence[tuple[float, float]], cell: float) -> Array:
+    """Return borders that are whole cells away from 0 and cover all ``ranges``, in degrees."""
+    first = math.floor(min(low for low, _ in ranges) / cell + 1e-9)
+    last = math.ceil(max(high for _, high in ranges) / cell - 1e-9)
     if first == last:
-        first, last = first - 1.0, last + 1.0
-    return np.arange(first, last + 0.5) * cell
+        first, last = first - 1, last + 1
+    return np.arange(first, last + 1, dtype=np.float64) * cell
 
 
 def _named_rules(rules: Sequence[str], names: Sequence[str]) -> dict[str, str]:
