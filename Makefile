@@ -34,8 +34,8 @@ $(VENV)/.tools: $(VENV)/.ready requirements/dev.lock
 
 # The compiled core and the package, installed in place.
 $(CORE): $(VENV)/.ready $(RUST) pyproject.toml
-	@echo "Compiling the core: about half a minute ..."
-	@VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --locked >$(VENV)/build.log 2>&1 \
+	@echo "Compiling the core for this machine: about half a minute ..."
+	@RUSTFLAGS="-C target-cpu=native" VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --locked >$(VENV)/build.log 2>&1 \
 	  || { cat $(VENV)/build.log; exit 1; }
 	@touch $@
 

@@ -44,12 +44,11 @@ class LamplitClimber:
         self._seconds_per_sample: float | None = None
 
     def climb(self, until_s: float) -> Rung:
-        """Return a picture of the largest power of two of samples that the time allows."""
+        """Return a picture of as many samples as the time allows, allotted to pixels by noise."""
         count = 1
         if self._seconds_per_sample is not None:
-            while 2 * count * self._seconds_per_sample <= until_s and 2 * count <= MOST_SAMPLES:
-                count *= 2
-        image = ll.render(self._scene, method="path", samples=count)
+            count = max(1, min(int(until_s / self._seconds_per_sample), MOST_SAMPLES))
+        image = ll.render(self._scene, method="path", samples=count, adaptive=True)
         seconds = float(image.statistics["trace_s"])
         self._seconds_per_sample = seconds / count
         return Rung(image.xyz, count, seconds)

@@ -178,7 +178,7 @@ def _values(node: Node) -> str:
         return f"`{json.dumps(node['const'])}`"
     if "enum" in node:
         return ", ".join(f"`{json.dumps(choice)}`" for choice in node["enum"])
-    if node["type"] == "array":
+    if node["type"] in {"array", "object"}:
         return _array(node)
     return _PLAIN[node["type"]] + _limits(node)
 
@@ -188,6 +188,8 @@ def _model(node: Node) -> str:
 
 
 def _array(node: Node) -> str:
+    if node["type"] == "object":
+        return f"`{{ name = {_PLAIN[node['additionalProperties']['type']]}, .. }}`"
     parts = node.get("prefixItems")
     if parts is None:
         noun = _values(node["items"])

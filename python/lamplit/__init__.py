@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from lamplit.engine import (
         Comparison,
         Image,
-        Measurement,
         RenderInterrupted,
         compare,
         measure,
@@ -33,7 +32,6 @@ _HOMES = {
     "Comparison": "lamplit.engine",
     "Image": "lamplit.engine",
     "LamplitError": "lamplit.errors",
-    "Measurement": "lamplit.engine",
     "RenderInterrupted": "lamplit.engine",
     "Scene": "lamplit.scene",
     "SpectralDistribution": "lamplit.spectrum",
@@ -50,7 +48,6 @@ __all__ = [
     "Comparison",
     "Image",
     "LamplitError",
-    "Measurement",
     "RenderInterrupted",
     "Scene",
     "SpectralDistribution",

@@ -68,7 +68,6 @@ def test_the_relative_error_is_of_the_luminance_and_a_hundredth_of_its_mean(
 def test_a_target_error_is_reached_and_its_samples_follow_the_noise(glass_ball: Maker) -> None:
     image = ll.render(glass_ball(), error=0.03, samples=4000)
     assert image.error_asked == 0.03
-    assert image.pilot_samples == 16
     # The error is foretold from 16 samples of each pixel.
     assert image.relative_error < 1.3 * 0.03
     assert 8 <= image.samples < 4000

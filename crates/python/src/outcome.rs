@@ -79,12 +79,6 @@ impl Render {
         self.of_layers(py, PixelSums::standard_error)
     }
 
-    /// Samples per pixel that only told how many each pixel takes, and are not in the picture.
-    #[getter]
-    fn pilot_samples(&self) -> u32 {
-        self.rendered.pilot_samples
-    }
-
     /// Where the weight of the walks went, as shares: `escaped`, `cut_by_depth`, `lost`, `chance`,
     /// `gap`, and `absorbed` by body. None for a method that keeps no ledger.
     fn ledger<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {

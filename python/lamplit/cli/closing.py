@@ -87,7 +87,7 @@ def _heading(image: Image) -> str:
     samples = f"{image.samples} sample" + ("s" if image.samples != 1 else "")
     counts = image.samples_per_pixel
     fewest, most = int(counts.min()), int(counts.max())
-    spread = f" ({fewest} to {most})" if image.pilot_samples else ""
+    spread = f" ({fewest} to {most})" if fewest < most else ""
     return (
         f"{image.scene.name or 'Scene'}: {image.width} × {image.height}, "
         f"{samples} per pixel{spread}, {image.elapsed_s:.1f} s"

@@ -103,7 +103,7 @@ def render(
         "Rendering",
         pixels=pixels,
         time_s=time,
-        first_round=engine.PILOT_SAMPLES * pixels if settled.adaptive else 0,
+        first_round=engine.FIRST_ROUND_SAMPLES * pixels if settled.adaptive else 0,
     )
     with stop_signals() as stop, progress:
         try:

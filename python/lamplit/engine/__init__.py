@@ -12,18 +12,18 @@ from lamplit.engine.light_sources import BeamLight, RayLight
 from lamplit.engine.lumens import LumenLedger
 from lamplit.engine.measure import MeasureInterrupted, measure
 from lamplit.engine.measurement import Measurement
-from lamplit.engine.plan import PILOT_SAMPLES, Plan, plan
+from lamplit.engine.plan import FIRST_ROUND_SAMPLES, Plan, plan
 from lamplit.engine.receivers import Goniometer, Plane
 from lamplit.engine.render import RenderInterrupted, render
 
 __all__ = [
-    "PILOT_SAMPLES",
+    "FIRST_ROUND_SAMPLES",
     "BeamLight",
     "Comparison",
     "CrossCheck",
     "Features",
-    "Image",
     "Goniometer",
+    "Image",
     "Ledger",
     "LumenLedger",
     "MeasureInterrupted",

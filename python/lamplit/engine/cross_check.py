@@ -46,7 +46,7 @@ class CrossCheck:
 
     @property
     def sigmas(self) -> Array:
-        """How many standard errors of the difference both are apart, (p,); 0 where both are dark."""
+        """How many standard errors both are apart, (p,); 0 where they are equal."""
         off = self.light_cd - self.eye_cd
         sigma = np.hypot(self.light_standard_error_cd, self.eye_standard_error_cd)
         return np.divide(off, sigma, out=np.zeros_like(off), where=off != 0.0)
@@ -83,7 +83,9 @@ def cross_check(
     carrier = SpectralCarrier(scene.image.wavelength_range_nm, scene.image.observer)
     world = assemble(in_laboratory(scene), carrier)
     eye = _Eye(world, measurement, measurement.weights(lit), (pixels, samples, eyes))
-    found = np.array([eye.intensity(direction) for direction in measurement.goniometer.directions()[chosen]])
+    found = np.array(
+        [eye.intensity(direction) for direction in measurement.goniometer.directions()[chosen]]
+    )
     return CrossCheck(
         seen.spot_h_deg[chosen],
         seen.spot_v_deg[chosen],

@@ -44,10 +44,8 @@ class Image:
     #: Samples per pixel that were taken (on average), and that were asked for (at most).
     samples: int
     samples_asked: int
-    #: Samples of each pixel that are in the picture, (H, W).
+    #: Samples of each pixel, (H, W).
     samples_per_pixel: NDArray[np.uint32]
-    #: Samples per pixel besides, which only told how many each pixel takes.
-    pilot_samples: int = 0
     #: The `relative_error` that was asked for, if any.
     error_asked: float | None = None
     #: Where the weight of all walks went; None for a method that keeps no ledger.

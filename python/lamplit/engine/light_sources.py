@@ -55,71 +55,78 @@ class BeamLight:
 Light = RayLight | BeamLight
 
 
-def photometer(
-    world: _core.Scene,
-    scene: Scene,
-    goniometer: Goniometer,
-    method: _core.PathMethod,
-    carrier: SpectralCarrier,
-    light: Light | None,
-    seed: int,
-) -> _core.Photometer:
-    """Return the core's photometer for the scene's own light, or for ``light``.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Laboratory:
+    """A built scene, and what it is measured with."""
 
-    Raises:
-        LamplitError: The light cannot be used.
-        ValueError: The core refuses it.
-    """
-    receivers = goniometer.for_core()
-    match light:
-        case None:
-            return _core.Photometer.shining(world, receivers, method, seed=seed)
-        case BeamLight():
-            spectrum = _spectrum(scene, light.source)
-            irradiance = carrier.light(spectrum, light.illuminance_lx, where="beam")
-            h, v = np.radians(light.h_deg), np.radians(light.v_deg)
-            local = np.array([np.sin(h) * np.cos(v), np.sin(v), np.cos(h) * np.cos(v)])
-            travels = (-local @ goniometer.frame()).tolist()
-            radius = float(np.radians(light.angular_radius_deg))
-            return _core.Photometer.beam(
-                world, receivers, method, travels, radius, irradiance, seed=seed
-            )
-        case RayLight():
-            return _rays(world, scene, receivers, method, carrier, light, seed)
+    world: _core.Scene
+    scene: Scene
+    carrier: SpectralCarrier
+    goniometer: Goniometer
+    method: _core.PathMethod
+    seed: int
 
+    def photometer(self, light: Light | None) -> _core.Photometer:
+        """Return the core's photometer for the scene's own light, or for ``light``.
 
-def _rays(
-    world: _core.Scene,
-    scene: Scene,
-    receivers: _core.Receivers,
-    method: _core.PathMethod,
-    carrier: SpectralCarrier,
-    light: RayLight,
-    seed: int,
-) -> _core.Photometer:
-    if (light.spectrum is None) == (light.wavelengths_nm is None):
-        raise LamplitError("rays have either one spectrum, or wavelengths_nm of their own")
-    arrays = [np.ascontiguousarray(a, np.float64) for a in (light.positions_mm, light.directions)]
-    flux = np.ascontiguousarray(light.flux, np.float64)
-    if light.spectrum is not None:
-        spectrum = carrier.light(_spectrum(scene, light.spectrum), 1.0, where="rays")
-        return _core.Photometer.rays(
-            world, receivers, method, *arrays, flux, spectrum=spectrum, seed=seed
+        Raises:
+            LamplitError: The light cannot be used.
+            ValueError: The core refuses it.
+        """
+        match light:
+            case None:
+                return _core.Photometer.shining(
+                    self.world, self.goniometer.for_core(), self.method, seed=self.seed
+                )
+            case BeamLight():
+                return self._beam(light)
+            case RayLight():
+                return self._rays(light)
+
+    def _beam(self, light: BeamLight) -> _core.Photometer:
+        spectrum = self._spectrum(light.source)
+        h, v = np.radians(light.h_deg), np.radians(light.v_deg)
+        local = np.array([np.sin(h) * np.cos(v), np.sin(v), np.cos(h) * np.cos(v)])
+        return _core.Photometer.beam(
+            self.world,
+            self.goniometer.for_core(),
+            self.method,
+            (-local @ self.goniometer.frame()).tolist(),
+            float(np.radians(light.angular_radius_deg)),
+            self.carrier.light(spectrum, light.illuminance_lx, where="beam"),
+            seed=self.seed,
         )
-    numbers = _wavelength_numbers(np.asarray(light.wavelengths_nm, np.float64), carrier)
-    return _core.Photometer.rays(
-        world,
-        receivers,
-        method,
-        *arrays,
-        flux,
-        wavelengths=numbers,
-        step_nm=carrier.step_nm,
-        seed=seed,
-    )
+
+    def _rays(self, light: RayLight) -> _core.Photometer:
+        spectrum: NDArray[np.float64] | None = None
+        wavelengths: NDArray[np.uint32] | None = None
+        if light.spectrum is not None and light.wavelengths_nm is None:
+            spectrum = self.carrier.light(self._spectrum(light.spectrum), 1.0, where="rays")
+        elif light.spectrum is None and light.wavelengths_nm is not None:
+            own = np.asarray(light.wavelengths_nm, np.float64)
+            wavelengths = _wavelength_numbers(own, self.carrier)
+        else:
+            raise LamplitError("rays have either one spectrum, or wavelengths_nm of their own")
+        return _core.Photometer.rays(
+            self.world,
+            self.goniometer.for_core(),
+            self.method,
+            np.ascontiguousarray(light.positions_mm, np.float64),
+            np.ascontiguousarray(light.directions, np.float64),
+            np.ascontiguousarray(light.flux, np.float64),
+            spectrum=spectrum,
+            wavelengths=wavelengths,
+            step_nm=self.carrier.step_nm,
+            seed=self.seed,
+        )
+
+    def _spectrum(self, source: SpectralDistribution | str) -> SpectralDistribution:
+        return self.scene.resolve_source(source) if isinstance(source, str) else source
 
 
-def _wavelength_numbers(wavelengths_nm: NDArray[np.float64], carrier: SpectralCarrier) -> NDArray[np.uint32]:
+def _wavelength_numbers(
+    wavelengths_nm: NDArray[np.float64], carrier: SpectralCarrier
+) -> NDArray[np.uint32]:
     """Return which of the picture's wavelengths, each the middle of a step, is nearest."""
     low = carrier.wavelengths_nm[0] - carrier.step_nm / 2.0
     places = np.floor((wavelengths_nm - low) / carrier.step_nm)
@@ -131,7 +138,3 @@ def _wavelength_numbers(wavelengths_nm: NDArray[np.float64], carrier: SpectralCa
             "image.wavelength_range_nm; widen it, or leave such rays out"
         )
     return places.astype(np.uint32)
-
-
-def _spectrum(scene: Scene, source: SpectralDistribution | str) -> SpectralDistribution:
-    return scene.resolve_source(source) if isinstance(source, str) else source

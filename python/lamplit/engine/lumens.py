@@ -12,9 +12,8 @@ from typing import Any
 class LumenLedger:
     """Where the luminous flux of a light group went, in lm, as it was walked.
 
-    ``emitted`` = ``out`` + all of ``absorbed`` + ``cut_by_depth`` + ``lost`` + ``chance`` + ``gap``,
-    and the gap is nothing but rounding. ``emitted`` differs from what the scene states by the noise
-    of the walks.
+    ``emitted`` is the sum of all others, and the gap is nothing but rounding. ``emitted`` differs
+    from what the scene states by the noise of the walks.
     """
 
     emitted: float

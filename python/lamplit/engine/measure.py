@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from lamplit import _core
 from lamplit.engine.assembly import assemble
 from lamplit.engine.carrier import SpectralCarrier
-from lamplit.engine.light_sources import Light, photometer
+from lamplit.engine.light_sources import Laboratory, Light
 from lamplit.engine.lumens import LumenLedger
 from lamplit.engine.measurement import Measurement
 from lamplit.engine.receivers import (
@@ -77,8 +77,8 @@ def measure(
 ) -> Measurement:
     """Walk light from the lamp's sources and return its luminous intensity over directions.
 
-    ``spots`` (n, 2) are H and V in degrees of round receivers, ``grid`` the borders of cells along H
-    and V (None: each degree over ±90°), ``plane`` a rectangle to light. ``distance_m`` and
+    ``spots`` (n, 2) are H and V in degrees of round receivers, ``grid`` the borders of cells along
+    H and V (None: each degree over ±90°), ``plane`` a rectangle to light. ``distance_m`` and
     ``receiver_deg`` stand in for those of [measure]; an infinite distance is the far field.
     ``light`` is walked instead of what shines in the scene. ``spectra`` keeps the spectrum of each
     cell of the grid.
@@ -93,6 +93,12 @@ def measure(
         MeasureInterrupted: Ctrl-C; its ``measurement`` has the paths that were done.
     """
     _check(paths=paths, error=error, time_s=time_s)
+    if receiver_deg is not None and not 0.0 < receiver_deg <= 180.0:
+        raise LamplitError(
+            f"a receiver subtends more than 0° and at most 180°, not {receiver_deg:g}°"
+        )
+    if distance_m is not None and not distance_m > 0.0:
+        raise LamplitError(f"a receiver's distance is above 0 m, not {distance_m:g} m")
     settings = measure_settings(scene)
     dark = in_laboratory(scene)
     carrier = SpectralCarrier(scene.image.wavelength_range_nm, scene.image.observer)
@@ -106,7 +112,7 @@ def measure(
         up=settings.up,
         centre_mm=settings.centre_mm or _middle(world, scene),
         distance_m=None if distance is None or math.isinf(distance) else distance,
-        receiver_deg=receiver_deg or settings.receiver_deg,
+        receiver_deg=settings.receiver_deg if receiver_deg is None else receiver_deg,
         spot_h_deg=h,
         spot_v_deg=v,
         h_edges_deg=h_edges,
@@ -115,7 +121,27 @@ def measure(
         spot_bands=max(cuts),
         cell_bands=1 if spectra else 0,
     )
-    run = _Run(scene, dark, world, carrier, goniometer, light, seed or scene.image.seed, threads)
+    method = _core.PathMethod(
+        max_depth=scene.path_settings.max_depth,
+        split_depth=_SPLIT_DEPTH,
+        roulette_below=_ROULETTE_BELOW,
+    )
+    seed = scene.image.seed if seed is None else seed
+    laboratory = Laboratory(
+        world=world,
+        scene=dark,
+        carrier=carrier,
+        goniometer=goniometer,
+        method=method,
+        seed=seed,
+    )
+    try:
+        meter = laboratory.photometer(light)
+    except ValueError as fault:
+        raise _told(str(fault), scene, goniometer, light) from fault
+    groups = light_groups(dark) if light is None else (light.group,)
+    about = {"goniometer": goniometer, "groups": groups, "scene": scene, "light": light}
+    run = _Run(meter, goniometer, about | {"seed": seed, "threads": threads}, threads or 0)
     return run.until(paths, error, time_s, until, progress)
 
 
@@ -135,9 +161,7 @@ def in_laboratory(scene: Scene) -> Scene:
     left_out = {*(scene.measure.leave_out if scene.measure else ())}
     objects = tuple(thing for thing in scene.objects if thing.name not in left_out)
     if not objects:
-        raise SceneError(
-            "nothing is left to measure", file=scene.path, where="measure.leave_out"
-        )
+        raise SceneError("nothing is left to measure", file=scene.path, where="measure.leave_out")
     tables: dict[str, Any] = {"background": BLACK, "ambient": None, "lights": ()}
     return scene.changed(**tables, **({"objects": objects} if left_out else {}))
 
@@ -154,33 +178,16 @@ def _middle(world: _core.Scene, scene: Scene) -> tuple[float, float, float]:
     return x, y, z
 
 
+@dataclass(eq=False)
 class _Run:
     """One measurement in the making."""
 
-    def __init__(
-        self,
-        scene: Scene,
-        dark: Scene,
-        world: _core.Scene,
-        carrier: SpectralCarrier,
-        goniometer: Goniometer,
-        light: Light | None,
-        seed: int,
-        threads: int | None,
-    ) -> None:
-        self._scene, self._carrier, self._goniometer = scene, carrier, goniometer
-        self._light, self._seed, self._threads = light, seed, threads
-        self._groups = light_groups(dark) if light is None else (light.group,)
-        method = _core.PathMethod(
-            max_depth=scene.path_settings.max_depth,
-            split_depth=_SPLIT_DEPTH,
-            roulette_below=_ROULETTE_BELOW,
-        )
-        try:
-            self._meter = photometer(world, dark, goniometer, method, carrier, light, seed)
-        except ValueError as fault:
-            raise _told(str(fault), scene, goniometer, light) from fault
-        self._started = time.perf_counter()
+    meter: _core.Photometer
+    goniometer: Goniometer
+    #: What a `Measurement` says of what was measured.
+    about: Mapping[str, Any]
+    threads: int
+    started: float = field(default_factory=time.perf_counter)
 
     def until(
         self,
@@ -195,10 +202,10 @@ class _Run:
         most = min(math.ceil(most / _core.BATCHES), _MOST_IN_BATCH)
         wanted = min(_FIRST_ROUND, most) if is_open else most
         while True:
-            left = None if time_s is None else time_s - (time.perf_counter() - self._started)
-            before = self._meter.paths_per_batch
+            left = None if time_s is None else time_s - (time.perf_counter() - self.started)
+            before = self.meter.paths_per_batch
             interrupted = self._walk(wanted - before, left, progress, most)
-            done = self._meter.paths_per_batch
+            done = self.meter.paths_per_batch
             is_over = done >= most or done < wanted or interrupted
             if is_over and not is_open:
                 return self._result(complete=not interrupted, interrupted=interrupted)
@@ -218,7 +225,7 @@ class _Run:
     def _walk(
         self, more: int, time_s: float | None, progress: ProgressCallback | None, most: int
     ) -> bool:
-        before = self._meter.paths_per_batch * _core.BATCHES
+        before = self.meter.paths_per_batch * _core.BATCHES
 
         def tell(done: int, total: int) -> None:
             if progress is not None:
@@ -227,12 +234,10 @@ class _Run:
 
         if time_s is not None and time_s <= 0.0:
             return False
-        return self._meter.walk(
-            more, time_budget_s=time_s, threads=self._threads or 0, progress=tell
-        )
+        return self.meter.walk(more, time_budget_s=time_s, threads=self.threads, progress=tell)
 
     def _result(self, *, complete: bool, interrupted: bool) -> Measurement:
-        meter, gonio = self._meter, self._goniometer
+        meter, gonio = self.meter, self.goniometer
         rows, columns = gonio.v_edges_deg.size - 1, gonio.h_edges_deg.size - 1
         cells = meter.cells()
         batches, groups = cells.shape[:2]
@@ -245,11 +250,10 @@ class _Run:
         if gonio.cell_bands:
             bands = meter.cell_bands()
             spectra = bands.reshape(groups, rows, columns, -1) / gonio.cell_sr[..., None]
-        entries = {name: meter.ledger(at) for at, name in enumerate(self._groups)}
+        entries = {name: meter.ledger(at) for at, name in enumerate(self.about["groups"])}
         found = {name: LumenLedger(**own) for name, own in entries.items() if own is not None}
         measurement = Measurement(
-            goniometer=gonio,
-            groups=tuple(self._groups),
+            **self.about,
             emitted_xyz=meter.emitted(),
             out_xyz=meter.out()[:, :, 0],
             spot_xyz=meter.spots() / gonio.spot_sr,
@@ -262,12 +266,8 @@ class _Run:
             grid_band_centres_nm=self._centres(gonio.cell_bands),
             paths=meter.paths_per_batch * _core.BATCHES,
             ledgers=found,
-            scene=self._scene,
-            light=self._light,
-            seed=self._seed,
-            threads=self._threads,
             statistics=meter.statistics(),
-            elapsed_s=time.perf_counter() - self._started,
+            elapsed_s=time.perf_counter() - self.started,
             complete=complete,
             interrupted=interrupted,
             version=_core.__version__,
@@ -277,7 +277,7 @@ class _Run:
         return measurement
 
     def _centres(self, per_lane: int) -> Array:
-        low, high = self._scene.image.wavelength_range_nm
+        low, high = self.about["scene"].image.wavelength_range_nm
         count = per_lane * _core.LANES
         return low + (high - low) * (np.arange(count) + 0.5) / max(count, 1)
 

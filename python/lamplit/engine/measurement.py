@@ -92,7 +92,9 @@ class Measurement:
             settings = self.scene.measure
             functions = {own.name: own for own in (settings.functions if settings else ())}
             if lit not in functions:
-                raise LamplitError(f"the lamp has no function {lit!r}{nearest_name(lit, functions)}")
+                raise LamplitError(
+                    f"the lamp has no function {lit!r}{nearest_name(lit, functions)}"
+                )
             light = functions[lit].light
             if not light:
                 return np.ones(len(self.groups))
@@ -100,7 +102,9 @@ class Measurement:
             light = lit
         for name in light:
             if name not in self.groups:
-                raise LamplitError(f"there is no light group {name!r}{nearest_name(name, self.groups)}")
+                raise LamplitError(
+                    f"there is no light group {name!r}{nearest_name(name, self.groups)}"
+                )
         return np.array([light.get(name, 0.0) for name in self.groups])
 
     def observed(self, lit: Lit = None, *, name: str | None = None) -> Observed:
@@ -129,7 +133,7 @@ class Measurement:
         )
 
     def _floor(self, weights: Array, values: Array, solid_angle: Array | float) -> Array:
-        """Return the standard error, without the axes of batches and groups, of what was not met."""
+        """Return the standard error, without the first two axes, of what no path met."""
         one = self.emitted_xyz * weights[:, None] / max(self.paths, 1)
         missed = (values == 0.0).all(axis=0)
         one = one.reshape(one.shape[0], *[1] * (missed.ndim - 2), 3)

@@ -14,8 +14,8 @@ from lamplit.scene.camera import MOST_SAMPLES, ImageSettings
 
 METHODS = ("path", "hall")
 
-#: What the core's first round of adaptive sampling takes of each pixel, and then throws away.
-PILOT_SAMPLES = 16
+#: What the core takes of each pixel before it can tell how many samples an error or a time needs.
+FIRST_ROUND_SAMPLES = 16
 
 
 @dataclass(frozen=True)
@@ -65,16 +65,11 @@ def plan(
     target = None if chosen == "hall" else error
     if error is None and chosen == "path" and adaptive is not False:
         target = scene.image.error
-    by_noise = target is not None if adaptive is None else adaptive
+    by_noise = (target or time_s) is not None if adaptive is None else adaptive
     most = samples
     if most is None:
         is_open = error is not None or time_s is not None or _leaves_samples_open(scene, target)
         most = MOST_SAMPLES if is_open else scene.image.samples
-    if by_noise and most <= PILOT_SAMPLES:
-        raise LamplitError(
-            f"adaptive sampling throws its first {PILOT_SAMPLES} samples per pixel away, and "
-            f"{most} are allowed; allow more samples, or sample uniformly"
-        )
     planned = _with(scene, method=chosen, samples=most, error=target)
     return Plan(planned, by_noise, target, time_s)
 

@@ -17,13 +17,13 @@ from lamplit.scene.measuring import MeasureSettings
 Array = NDArray[np.float64]
 
 _MM_PER_M = 1e3
-#: Borders of the grid's cells where nothing else is asked for: 1° over the half space before the lamp.
+#: Borders of the grid's cells where nothing else is asked for: 1° over the front half space.
 _EDGES_DEG = np.arange(-90.0, 90.5)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Plane:
-    """A rectangle whose front catches light, in ``columns`` by ``rows`` pixels, from the top left."""
+    """A rectangle whose front catches light, in ``columns`` by ``rows`` pixels from the top."""
 
     centre_mm: Sequence[float]
     #: The front's outward direction, towards the lamp.
@@ -46,7 +46,9 @@ class Plane:
             LamplitError: The rectangle has no area, no pixels, or ``up`` is along its normal.
         """
         if min(self.width_mm, self.height_mm, self.columns, self.rows) <= 0:
-            raise LamplitError("a plane to measure needs a width, a height, columns and rows above 0")
+            raise LamplitError(
+                "a plane to measure needs a width, a height, columns and rows above 0"
+            )
         normal = np.asarray(self.normal, float)
         right = np.cross(self.up, normal)
         if not np.linalg.norm(right) > 1e-9 * np.linalg.norm(normal) > 0.0:

@@ -60,8 +60,8 @@ def render(
     ``samples`` per pixel stand in for the scene's own. ``error`` is the `Image.relative_error` to
     sample down to, and ``time_s`` the seconds to trace for; with either, ``samples`` is the most
     that a pixel takes on average, and None sets no limit of its own. ``adaptive`` allots samples to
-    pixels by their noise and what they cost, after a first round that is thrown away, so that no
-    pixel is biased; None does so where there is an error to reach.
+    pixels by how noisy and costly a first round found their neighbours, so that no pixel is biased
+    by its own samples; None does so where there is an error to reach or a time to use.
 
     ``threads`` of None takes one per core; the result does not depend on it, but for how far it
     comes in ``time_s``. ``spectral_bands`` keeps each pixel's spectrum, ``layers`` a picture for
@@ -111,7 +111,6 @@ def render(
         samples=_samples(settled, outcome, counts),
         samples_asked=settled.samples,
         samples_per_pixel=counts,
-        pilot_samples=outcome.pilot_samples,
         error_asked=settled.error,
         ledger=Ledger.of(outcome),
         seed=scene.image.seed,

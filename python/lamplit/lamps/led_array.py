@@ -175,6 +175,7 @@ def _tables(p: Parameters, layout: _Layout) -> list[Table]:
         ),
         *studio.picture(white_luminance_cd_m2=600.0),
         studio.hall(3e-3),
+        *studio.laboratory([_function(p)]),
         *studio.surroundings(190.0, 30.0, 120.0),
         studio.soft_box(
             2600.0, (-265.0, 22.0, 1000.0), (420.0, 90.0), edge_softness=0.2, up=(0.12, 1.0, 0.0)
@@ -225,6 +226,12 @@ def _board(p: Parameters) -> dict[str, Any]:
         "max_mm": [x, y, _BOARD_TOP_Z],
         "material": "solder-mask",
     }
+
+
+def _function(p: Parameters) -> dict[str, Any]:
+    if p.amber:
+        return {"name": "indicator", "rule": "un-r148/2a"}
+    return {"name": "stop", "rule": "un-r148/S1"}
 
 
 def _materials(p: Parameters) -> list[Table]:

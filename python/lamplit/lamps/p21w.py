@@ -8,7 +8,7 @@ Neighbouring parts keep at least 0.2 mm apart.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -197,6 +197,7 @@ def _tables(p: Parameters, layout: _Layout, lens_crease: float) -> list[Table]:
         ),
         *studio.picture(white_luminance_cd_m2=600.0),
         studio.hall(3e-3),
+        *studio.laboratory([_function(p)]),
         *studio.surroundings(150.0, 25.0, 30.0),
         studio.soft_box(900.0, (0.0, 350.0, 1500.0), (4000.0, 2100.0), edge_softness=0.7),
         studio.soft_box(6500.0, (-420.0, 235.0, 1000.0), (760.0, 130.0)),
@@ -218,6 +219,14 @@ def _tables(p: Parameters, layout: _Layout, lens_crease: float) -> list[Table]:
         mesh_object("filament", "tungsten", crease_deg=60.0, emission=glow),
         studio.table_top(ground, "black-abs", front_mm=1.7 * size),
     ]
+
+
+def _function(p: Parameters) -> dict[str, Any]:
+    if p.lens_colour == "amber":
+        return {"name": "indicator", "rule": "un-r148/2a"}
+    if p.lens_colour == "red":
+        return {"name": "stop", "rule": "un-r148/S1"}
+    return {"name": "reversing", "rule": "un-r148/AR"}
 
 
 def _materials(p: Parameters) -> list[Table]:

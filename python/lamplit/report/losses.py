@@ -53,7 +53,7 @@ class Losses:
         return cls(
             segments=counts.get("eye_rays", 0) + counts.get("shadow_rays", 0),
             lost_rays=counts.get("lost_rays", {}),
-            samples=(done + image.pilot_samples) * image.width * image.height,
+            samples=done * image.width * image.height,
             dropped_samples=counts.get("dropped_samples", 0),
             first_dropped=place,
         )

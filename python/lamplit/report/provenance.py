@@ -26,7 +26,6 @@ def provenance(image: Image) -> dict[str, Any]:
         "seed": image.seed,
         "samples": image.samples,
         "samples_asked": image.samples_asked,
-        "pilot_samples": image.pilot_samples,
         "error_asked": image.error_asked,
         "complete": image.complete,
         "observer": scene.image.observer,

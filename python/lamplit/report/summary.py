@@ -87,7 +87,7 @@ def picture_numbers(xyz: Array, standard_error: Array, developed: Developed) -> 
 def speed(image: Image) -> dict[str, float | None]:
     """Return rays (segments of walks and towards lights) and walks from the eye per second."""
     seconds = float(image.statistics.get("trace_s", 0.0))
-    walks = int(image.samples_per_pixel.sum()) + image.pilot_samples * image.width * image.height
+    walks = int(image.samples_per_pixel.sum())
     counts = {"rays_per_s": Losses.of(image).segments, "paths_per_s": walks}
     return {name: count / seconds if seconds > 0.0 else None for name, count in counts.items()}
 

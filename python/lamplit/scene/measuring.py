@@ -109,6 +109,4 @@ def check_measuring(scene: Scene) -> None:
 
 def _known(what: str, name: str, names: set[str], where: str) -> None:
     if name not in names:
-        raise SceneError(
-            f"no {what} is called {name!r}{nearest_name(name, names)}", where=where
-        )
+        raise SceneError(f"no {what} is called {name!r}{nearest_name(name, names)}", where=where)

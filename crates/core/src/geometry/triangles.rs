@@ -145,8 +145,10 @@ impl Triangles {
         bodies: &[u32],
         reach: f64,
         is_candidate: impl Fn(u32, [DVec3; 2]) -> bool + Sync,
+        matters: impl Fn(u32, u32) -> bool + Sync,
     ) -> Vec<u32> {
-        self.tree.as_ref().map_or_else(Vec::new, |tree| tree.touching(bodies, reach, is_candidate))
+        let tree = self.tree.as_ref();
+        tree.map_or_else(Vec::new, |tree| tree.touching(bodies, reach, is_candidate, matters))
     }
 
     /// The triangles whose box is `wanted`; whatever is wanted of a box is wanted of all larger ones.

@@ -9,7 +9,7 @@ mod settings;
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use thiserror::Error;
 
@@ -73,15 +73,13 @@ pub struct Rendered {
     pub film: Film,
     /// What happened to the rays.
     pub tally: Tally,
-    /// Samples per pixel that only told how many the pixel needs, and are not in the picture.
-    pub pilot_samples: u32,
 }
 
 /// Render `scene`.
 ///
 /// The samples of a pixel are summed in their order by whichever thread holds it, so the film
 /// depends on the scene, the seed and the range of samples alone. Where samples are allotted, a
-/// first round, which is then thrown away, tells how many each pixel takes. With a time budget the
+/// first round tells how many each pixel takes. With a time budget the
 /// clock chooses the number of samples, and nothing else. A cancelled rendering returns what it has.
 ///
 /// # Errors
@@ -118,33 +116,41 @@ impl Rendering<'_> {
         self.expect(self.pixels() * samples.len() as u64);
         let mut film = self.settings.new_film(self.scene);
         let mut tally = Tally::new(self.scene.bodies.len());
-        if !self.settings.adaptive {
-            self.expose(&mut film, &mut tally, samples, None, started);
-            return Rendered { film, tally, pilot_samples: 0 };
+        let pilot_samples = self.pilot_samples();
+        if !self.settings.adaptive || pilot_samples == samples.len() as u32 {
+            self.expose(&mut film, &mut tally, samples, self.settings.time_budget, None);
+            return Rendered { film, tally };
         }
-        let rest = samples.end.min(samples.start + Pilot::SAMPLES);
-        let mut first = Film::new(self.settings.width, self.settings.height, 0, 0);
-        self.expose(&mut first, &mut tally, samples.start..rest, None, started);
-        if self.progress.is_cancelled() || rest == samples.end {
-            // There is nothing but the first round, of as many samples for every pixel.
-            return Rendered { film: first, tally, pilot_samples: 0 };
+        let rest = samples.start + pilot_samples;
+        self.expose(&mut film, &mut tally, samples.start..rest, None, None);
+        if !self.progress.is_cancelled() {
+            let allocation = self.allocate(&Pilot::of(&film), pilot_samples, started);
+            self.expect(allocation.total());
+            let range = rest..samples.start.saturating_add(allocation.most());
+            self.expose(&mut film, &mut tally, range, None, Some(&allocation));
         }
-        let pilot_samples = rest - samples.start;
-        let allocation = self.allocate(&first, samples.end - rest, started);
-        self.expect(self.pixels() * u64::from(pilot_samples) + allocation.total());
-        let range = rest..rest.saturating_add(allocation.most());
-        self.expose(&mut film, &mut tally, range, Some(&allocation), started);
-        Rendered { film, tally, pilot_samples }
+        Rendered { film, tally }
     }
 
-    /// Allot what is left, in samples or in time, as the first round says.
-    fn allocate(&self, first: &Film, mean_samples: u32, started: Instant) -> Allocation {
-        let pilot = Pilot::of(first);
-        let mut affordable = f64::from(mean_samples);
+    /// How many samples of every pixel the first round has: a quarter of all where their number is
+    /// known. A picture of one pixel has no neighbours to learn from.
+    fn pilot_samples(&self) -> u32 {
+        let samples = self.settings.samples.len() as u32;
+        let is_open = self.settings.target_error.is_some() || self.settings.time_budget.is_some();
+        let wanted = if is_open { Pilot::USUAL } else { samples / 4 };
+        if self.pixels() == 1 {
+            samples
+        } else {
+            wanted.clamp(Pilot::FEWEST, Pilot::MOST).min(samples)
+        }
+    }
+
+    /// Allot samples, or time, as the first round says.
+    fn allocate(&self, pilot: &Pilot, pilot_samples: u32, started: Instant) -> Allocation {
+        let mut affordable = self.settings.samples.len() as f64;
         if let Some(budget) = self.settings.time_budget {
-            let spent = started.elapsed().as_secs_f64();
-            let each = spent * pilot.cost() / first.segments.iter().sum::<u64>() as f64;
-            affordable = affordable.min((budget.as_secs_f64() - spent).max(0.0) / each);
+            let share = budget.as_secs_f64() / started.elapsed().as_secs_f64();
+            affordable = affordable.min(f64::from(pilot_samples) * share);
         }
         pilot.allocate(affordable, self.settings.target_error)
     }
@@ -157,26 +163,25 @@ impl Rendering<'_> {
         self.progress.total.store(samples, Ordering::Relaxed);
     }
 
-    /// Take samples of every pixel, or as many of them as it is allotted; without an allocation, as
-    /// many as the time allows.
+    /// Take samples of every pixel, as many of them as it is allotted or as the time allows.
     fn expose(
         &self,
         film: &mut Film,
         tally: &mut Tally,
         samples: Range<u32>,
-        allocation: Option<&Allocation>,
-        started: Instant,
+        time_budget: Option<Duration>,
+        limit: Option<&Allocation>,
     ) {
+        let started = Instant::now();
         let (mut next, mut length) = (samples.start, 1);
         while next < samples.end && !self.progress.is_cancelled() {
             let end = samples.end.min(next + length);
             let Self { scene, settings, interior, progress } = *self;
-            let limit = allocation.map(|allocation| (samples.start, allocation));
             let pass = Pass { scene, settings, interior, samples: next..end, limit, progress };
             tally.add(&pass.run(film));
             next = end;
             length = (length * 2).min(LONGEST_PASS);
-            if let (Some(budget), None) = (settings.time_budget, allocation) {
+            if let Some(budget) = time_budget {
                 let spent = started.elapsed().as_secs_f64();
                 let left = (budget.as_secs_f64() - spent) / spent;
                 let affordable = (left * f64::from(next - samples.start)) as u32;

@@ -21,8 +21,8 @@ pub(super) struct Pass<'a> {
     /// The bodies that the eye is in.
     pub interior: Interior,
     pub samples: Range<u32>,
-    /// From which sample on each pixel takes only as many as it is allotted.
-    pub limit: Option<(u32, &'a Allocation)>,
+    /// How many samples each pixel takes in all, where that is not the same.
+    pub limit: Option<&'a Allocation>,
     pub progress: &'a Progress,
 }
 
@@ -80,7 +80,8 @@ impl Pass<'_> {
     /// The samples that this pass takes of a pixel.
     fn samples_of(&self, pixel: usize) -> Range<u32> {
         let Range { start, end } = self.samples;
-        let limit = self.limit.map(|(first, allocation)| first + allocation.of(pixel));
+        let first = self.settings.samples.start;
+        let limit = self.limit.map(|allocation| first.saturating_add(allocation.of(pixel)));
         start..limit.unwrap_or(end).clamp(start, end)
     }
 

@@ -159,6 +159,10 @@ impl SceneBuilder {
             &self.triangle_bodies,
             &self.mesh_boxes(),
             &self.primitives,
+            |body| {
+                let material = self.bodies[body as usize].material;
+                self.materials[material].dielectric().is_some()
+            },
         );
         let emitters = self.emitters(triangles.as_ref())?;
         Ok(Scene {

@@ -5,8 +5,9 @@ use super::body::BodyId;
 use crate::geometry::{overlap, Primitive, Triangles};
 use crate::math::{gamma, largest_component, DVec3};
 
-/// Which triangles and primitives may share a place with a face of another body. A ray that meets
-/// one of them asks for the others; all others are spared the question.
+/// Which triangles and primitives may share a place with a face of another body, one of both
+/// transparent: of two opaque ones either ends the ray. A ray that meets one of them asks for the
+/// others; all others are spared the question.
 #[derive(Default)]
 pub(super) struct Contacts {
     /// One per triangle, or empty where none touches.
@@ -19,24 +20,27 @@ pub(super) struct Contacts {
 
 impl Contacts {
     /// Find them, by boxes, and between triangles by planes as well. `mesh_boxes` are the boxes of
-    /// the bodies that have triangles.
+    /// the bodies that have triangles, and `is_transparent` is asked of bodies.
     pub(super) fn find(
         triangles: Option<&Triangles>,
         triangle_bodies: &[BodyId],
         mesh_boxes: &[(BodyId, [DVec3; 2])],
         primitives: &[(Primitive, BodyId)],
+        is_transparent: impl Fn(BodyId) -> bool + Sync,
     ) -> Self {
         let reach = reach(triangles, mesh_boxes, primitives);
+        let matters = |a: BodyId, b: BodyId| a != b && (is_transparent(a) || is_transparent(b));
         let mut touched = triangles
-            .map(|set| set.touching(triangle_bodies, reach, candidates(mesh_boxes, reach)))
+            .map(|set| set.touching(triangle_bodies, reach, candidates(mesh_boxes, reach), matters))
             .unwrap_or_default();
         let mut touching_primitives = Vec::with_capacity(primitives.len());
-        for (at, (primitive, _)) in primitives.iter().enumerate() {
-            let close = triangles
+        for (at, (primitive, body)) in primitives.iter().enumerate() {
+            let mut close = triangles
                 .map(|set| set.in_boxes(|triangle| primitive.may_touch(triangle, reach)))
                 .unwrap_or_default();
-            let touches = |(other_at, (other, _)): (usize, &(Primitive, BodyId))| {
-                at != other_at && may_touch(primitive, other, reach)
+            close.retain(|triangle| matters(*body, triangle_bodies[*triangle as usize]));
+            let touches = |(other_at, (other, other_body)): (usize, &(Primitive, BodyId))| {
+                at != other_at && matters(*body, *other_body) && may_touch(primitive, other, reach)
             };
             let touches_primitive = primitives.iter().enumerate().any(touches);
             touching_primitives.push(touches_primitive || !close.is_empty());

@@ -71,7 +71,11 @@ impl Scene {
             nearest.t_max = hit.t;
             found = Some(self.on_triangle(&hit));
         }
+        let inverse = ray.direction.recip();
         for (at, (primitive, _)) in self.primitives.iter().enumerate() {
+            if !primitive.may_be_met(ray.origin, inverse, nearest.t_max) {
+                continue;
+            }
             if let Some(point) = primitive.closest_hit(&nearest) {
                 nearest.t_max = point.t;
                 found = Some(self.on_primitive(at, point));

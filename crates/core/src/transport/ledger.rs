@@ -108,7 +108,13 @@ impl Ledger {
 }
 
 fn units(weight: f64) -> i128 {
-    (weight / UNIT) as i128
+    const PER_ONE: f64 = 1.0 / UNIT;
+    // Machine integers hold weights below 8, and nearly all are.
+    if weight.abs() < 7.9 {
+        i128::from((weight * PER_ONE) as i64)
+    } else {
+        (weight * PER_ONE) as i128
+    }
 }
 
 #[cfg(test)]

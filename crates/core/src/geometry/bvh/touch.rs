@@ -58,12 +58,13 @@ impl Tree {
 
     /// The triangles that have a face of another body within `reach` in their own plane, or seem to
     /// as far as boxes and planes can tell. `is_candidate` sorts out, by body and box, those that
-    /// cannot have one.
+    /// cannot have one, and `matters` the pairs of bodies that nobody asks about.
     pub fn touching(
         &self,
         bodies: &[u32],
         reach: f64,
         is_candidate: impl Fn(u32, [DVec3; 2]) -> bool + Sync,
+        matters: impl Fn(u32, u32) -> bool + Sync,
     ) -> Vec<u32> {
         let touches = |(triangle, corners): &(u32, [DVec3; 3])| {
             let body = bodies[*triangle as usize];
@@ -74,8 +75,8 @@ impl Tree {
             let grown = [lo - DVec3::splat(reach), hi + DVec3::splat(reach)];
             let mut found = false;
             self.select(&|other| overlap(grown, other), &mut |other, other_corners| {
-                found |=
-                    bodies[other as usize] != body && share_plane(corners, other_corners, reach);
+                found |= matters(body, bodies[other as usize])
+                    && share_plane(corners, other_corners, reach);
             });
             found
         };

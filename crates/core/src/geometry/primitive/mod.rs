@@ -81,6 +81,7 @@ pub struct Primitive {
     to_world: DAffine3,
     to_local: DAffine3,
     normal_to_world: DMat3,
+    bounds: Option<[DVec3; 2]>,
 }
 
 impl Primitive {
@@ -94,7 +95,24 @@ impl Primitive {
             return Err(PrimitiveError::Singular);
         }
         let normal_to_world = to_local.matrix3.transpose();
-        Ok(Self { shape, to_world, to_local, normal_to_world })
+        let patches = shape.patches();
+        let bounds = patches.map(|patches| {
+            let boxes = patches.iter().map(|patch| patch.bounds(&to_world));
+            let [lo, hi] = boxes.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], patch::join);
+            let rounding = DVec3::splat(1e-9 * lo.abs().max(hi.abs()).max_element());
+            [lo - rounding, hi + rounding]
+        });
+        Ok(Self { shape, to_world, to_local, normal_to_world, bounds })
+    }
+
+    /// Whether a ray from `origin` may meet the primitive's box before `t_max`; `inverse` is 1 over
+    /// each component of its direction.
+    pub fn may_be_met(&self, origin: DVec3, inverse: DVec3, t_max: f64) -> bool {
+        self.bounds.is_none_or(|[lo, hi]| {
+            let (a, b) = ((lo - origin) * inverse, (hi - origin) * inverse);
+            let (enter, leave) = (a.min(b).max_element(), a.max(b).min_element());
+            enter <= leave && leave >= 0.0 && enter <= t_max
+        })
     }
 
     /// The first point where `ray` meets the primitive.
@@ -144,14 +162,7 @@ impl Primitive {
 
     /// The pieces of its surface in its own frame; `None` for an endless plane.
     pub(super) fn patches(&self) -> Option<Vec<Patch>> {
-        match &self.shape {
-            Shape::Sphere(sphere) => Some(sphere.patches()),
-            Shape::Polyhedron(body) => Some(body.patches()),
-            Shape::Cylinder(cylinder) => Some(cylinder.patches()),
-            Shape::Cone(cone) => Some(cone.patches()),
-            Shape::Disc(disc) => Some(disc.patches()),
-            Shape::Plane(_) => None,
-        }
+        self.shape.patches()
     }
 
     /// Where it stands.
@@ -168,14 +179,7 @@ impl Primitive {
 
     /// The primitive's box in the world; `None` for an endless plane.
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
-        let (centre, radius) = self.shape.bounding_sphere();
-        if !radius.is_finite() {
-            return None;
-        }
-        let middle = self.to_world.transform_point3(centre);
-        let m = self.to_world.matrix3;
-        let half = DVec3::new(m.row(0).length(), m.row(1).length(), m.row(2).length()) * radius;
-        Some((middle - half, middle + half))
+        self.bounds.map(|[lo, hi]| (lo, hi))
     }
 
     /// Whether its surface may come within `reach` mm of something in the box from `lo` to `hi`.
@@ -207,6 +211,18 @@ impl Primitive {
 }
 
 impl Shape {
+    /// The pieces of its surface; `None` for an endless plane.
+    fn patches(&self) -> Option<Vec<Patch>> {
+        match self {
+            Self::Sphere(sphere) => Some(sphere.patches()),
+            Self::Polyhedron(body) => Some(body.patches()),
+            Self::Cylinder(cylinder) => Some(cylinder.patches()),
+            Self::Cone(cone) => Some(cone.patches()),
+            Self::Disc(disc) => Some(disc.patches()),
+            Self::Plane(_) => None,
+        }
+    }
+
     /// Centre and radius of a sphere round the shape, in its own frame.
     fn bounding_sphere(&self) -> (DVec3, f64) {
         match self {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 OR MIT
 //! [`Patch`]: the pieces of a shape's surface, for sampling it by area.
 
-use crate::math::DVec3;
+use crate::math::{DAffine3, DVec3};
 
 /// A piece of a shape's surface, in the shape's own frame.
 #[derive(Clone, Debug)]
@@ -26,6 +26,42 @@ pub(in crate::geometry) enum Patch {
     },
     /// The side of a cylinder, cone or cut cone.
     Mantle(Mantle),
+}
+
+impl Patch {
+    /// Its box, lower and upper corner, after `to_world`.
+    pub fn bounds(&self, to_world: &DAffine3) -> [DVec3; 2] {
+        match self {
+            Self::Sphere { centre, radius } => round(to_world, *centre, *radius, DVec3::ZERO),
+            Self::Polygon(corners) => corners
+                .iter()
+                .map(|corner| [to_world.transform_point3(*corner); 2])
+                .fold([DVec3::INFINITY, DVec3::NEG_INFINITY], join),
+            Self::Disc { centre, normal, radius } => round(to_world, *centre, *radius, *normal),
+            Self::Mantle(mantle) => {
+                let upper = mantle.base + mantle.axis * mantle.height;
+                let rim = |centre, radius| round(to_world, centre, radius, mantle.axis);
+                join(rim(mantle.base, mantle.radii[0]), rim(upper, mantle.radii[1]))
+            }
+        }
+    }
+}
+
+/// The box round two boxes.
+pub(super) fn join([a_lo, a_hi]: [DVec3; 2], [b_lo, b_hi]: [DVec3; 2]) -> [DVec3; 2] {
+    [a_lo.min(b_lo), a_hi.max(b_hi)]
+}
+
+/// The box of what lies round `centre` within `radius`, at right angles to the unit `normal`, or of
+/// the ball where that is zero.
+fn round(to_world: &DAffine3, centre: DVec3, radius: f64, normal: DVec3) -> [DVec3; 2] {
+    let middle = to_world.transform_point3(centre);
+    let half = [0, 1, 2].map(|axis| {
+        let row = to_world.matrix3.row(axis);
+        radius * (row.length_squared() - row.dot(normal).powi(2)).max(0.0).sqrt()
+    });
+    let half = DVec3::from_array(half);
+    [middle - half, middle + half]
 }
 
 /// The side of a cylinder, cone or cut cone.

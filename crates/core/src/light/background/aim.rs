@@ -86,8 +86,13 @@ impl Aim {
         boxes.chain(suns).chain(self.base.iter().map(|base| (Target::Base, base.map.total())))
     }
 
+    /// Whether anything is seen from `from`.
+    pub fn is_any_seen(&self, soft_boxes: &[SoftBox], from: DVec3) -> bool {
+        self.targets(soft_boxes, from).any(|(_, weight)| weight > 0.0)
+    }
+
     /// The sum of all weights as seen from `from`.
-    pub fn weight(&self, soft_boxes: &[SoftBox], from: DVec3) -> f64 {
+    fn weight(&self, soft_boxes: &[SoftBox], from: DVec3) -> f64 {
         self.targets(soft_boxes, from).map(|(_, weight)| weight).sum()
     }
 

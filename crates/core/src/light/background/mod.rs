@@ -112,7 +112,7 @@ impl Background {
     /// choice: 0 where nothing stands out (an even or graded surround, an overcast sky, soft boxes
     /// seen from behind), else ½.
     pub fn aim_share(&self, from: DVec3) -> f64 {
-        if self.aim.weight(&self.soft_boxes, from) > 0.0 {
+        if self.aim.is_any_seen(&self.soft_boxes, from) {
             0.5
         } else {
             0.0

@@ -42,8 +42,21 @@ pub(super) enum CameBy {
     },
 }
 
-/// Where a step leads: nowhere, on, or on in two ways.
-pub(super) type Ways = [Option<Branch>; 2];
+/// Where a step leads.
+#[derive(Default)]
+pub(super) struct Ways {
+    /// Whether the branch itself goes on.
+    pub goes_on: bool,
+    /// What the ledger books of a branch that parted from it and waits.
+    pub parted: f64,
+}
+
+impl Ways {
+    /// On or nowhere, in one way.
+    pub fn one(goes_on: bool) -> Self {
+        Self { goes_on, parted: 0.0 }
+    }
+}
 
 impl Branch {
     /// The branch that every other comes from.
@@ -52,9 +65,16 @@ impl Branch {
         Self { ray, throughput, interior, sampler, depth: 0, splits: 0, came_by, promise: 1.0 }
     }
 
-    /// This branch after a mirror or a smooth interface.
+    /// Go on from a mirror or a smooth interface.
+    pub fn deflect(&mut self, origin: DVec3, direction: DVec3) {
+        self.ray = Ray::endless(origin, direction);
+        self.came_by = CameBy::OneWay;
+    }
+
+    /// A second branch for the other way on, with random numbers of its own.
     #[must_use]
-    pub fn deflected(self, origin: DVec3, direction: DVec3, interior: Interior) -> Self {
-        Self { ray: Ray::endless(origin, direction), interior, came_by: CameBy::OneWay, ..self }
+    pub fn part(&mut self) -> Self {
+        self.splits += 1;
+        Self { sampler: self.sampler.fork(self.splits), ..self.clone() }
     }
 }

@@ -70,19 +70,23 @@ impl PathWalk<'_> {
         }
     }
 
-    /// Turn a branch at a vertex: ∫ f L |cos θ| dω by one direction and one look at the emitters.
-    pub(super) fn scatter(&mut self, mut branch: Branch, vertex: &Vertex<'_>) -> Option<Branch> {
+    /// Turn a branch at a vertex, if it goes on: ∫ f L |cos θ| dω by one direction and one look at
+    /// the emitters.
+    pub(super) fn scatter(&mut self, branch: &mut Branch, vertex: &Vertex<'_>) -> bool {
         let lanes = self.lanes(branch.throughput);
-        self.see_emitters(&mut branch, vertex, &lanes);
+        let share = self.aim_share(vertex);
+        self.see_emitters(branch, vertex, &lanes, share);
         let [technique, u, v, w] = branch.sampler.next_4d();
-        let drawn = if technique < self.aim_share(vertex) {
+        let drawn = if technique < share {
             self.scene.background.aim(vertex.position, [u, v, w])
         } else {
             vertex.sample(&lanes, [u, v, w])
         };
-        let mut wo = drawn?;
+        let Some(mut wo) = drawn else {
+            return false;
+        };
         let own = vertex.pdf(wo, &lanes);
-        let pdf = self.mixed(vertex, wo, own);
+        let pdf = self.mixed(vertex, wo, own, share);
         branch.came_by = CameBy::Scattering { from: vertex.position, pdf };
         branch.promise = (pdf / own).max(1.0);
         branch.throughput *= vertex.answer(wo) * (1.0 / pdf);
@@ -93,7 +97,7 @@ impl PathWalk<'_> {
         let (origin, interior) = vertex.leave_along(wo);
         branch.ray = Ray::endless(origin, wo);
         branch.interior = interior;
-        (pdf > 0.0).then_some(branch)
+        pdf > 0.0
     }
 
     /// How often `scatter` draws a direction towards what is bright in the background.
@@ -105,9 +109,9 @@ impl PathWalk<'_> {
         }
     }
 
-    /// The density of the directions that `scatter` draws, per steradian; `own` is the vertex's own.
-    fn mixed(&self, vertex: &Vertex<'_>, wo: DVec3, own: f64) -> f64 {
-        let share = self.aim_share(vertex);
+    /// The density of the directions that `scatter` draws, per steradian; `own` is the vertex's own,
+    /// and `share` the `aim_share` there.
+    fn mixed(&self, vertex: &Vertex<'_>, wo: DVec3, own: f64, share: f64) -> f64 {
         if share > 0.0 {
             let ray = Ray::endless(vertex.position, wo);
             (1.0 - share) * own + share * self.scene.background.aim_pdf(&ray)
@@ -117,7 +121,13 @@ impl PathWalk<'_> {
     }
 
     /// Add what one point of the emitters sends straight to a vertex.
-    fn see_emitters(&mut self, branch: &mut Branch, vertex: &Vertex<'_>, lanes: &SampledSpectrum) {
+    fn see_emitters(
+        &mut self,
+        branch: &mut Branch,
+        vertex: &Vertex<'_>,
+        lanes: &SampledSpectrum,
+        share: f64,
+    ) {
         let emitters = &self.scene.emitters;
         let is_looked_for = self.purpose.looks_for_light() && !emitters.is_empty();
         if !is_looked_for || branch.depth >= self.settings.max_depth {
@@ -138,7 +148,8 @@ impl PathWalk<'_> {
             return;
         };
         let emitted = if emitter.per_n2 { emitted / (index * index) } else { emitted };
-        let other = self.mixed(vertex, seen.direction, vertex.pdf(seen.direction, lanes));
+        let own = vertex.pdf(seen.direction, lanes);
+        let other = self.mixed(vertex, seen.direction, own, share);
         let arriving = branch.throughput * answer * transmitted * emitted;
         self.add_light(emitter.group, arriving * (1.0 / (seen.pdf + other)));
     }

@@ -13,20 +13,20 @@ impl PathWalk<'_> {
     /// The ways on at the boundary of two transparent media: reflected and refracted.
     pub(super) fn cross(
         &mut self,
-        mut branch: Branch,
+        branch: &mut Branch,
         meeting: &Meeting,
         face: Face,
-        beyond: Interior,
+        beyond: &Interior,
     ) -> Ways {
-        let eta = self.index(&beyond) / self.index(&branch.interior);
+        let eta = self.index(beyond) / self.index(&branch.interior);
         let material = self.scene.material_of(face.body);
         // Outward from that body, whichever of the faces in this place was met first.
         let outward = if face.is_entered { meeting.side() } else { -meeting.side() };
         let roughness = material.roughness_at(meeting.hit.point.normal * outward);
         if roughness.is_some() {
             let bsdf = Bsdf::interface(eta, roughness);
-            let vertex = Vertex::on_interface(meeting, bsdf, branch.interior, beyond);
-            return [self.scatter(branch, &vertex), None];
+            let vertex = Vertex::on_interface(meeting, bsdf, branch.interior, *beyond);
+            return Ways::one(self.scatter(branch, &vertex));
         }
         let [choice, lane, ..] = branch.sampler.next_4d();
         let reflected = if eta.is_even() {
@@ -34,63 +34,87 @@ impl PathWalk<'_> {
         } else {
             eta.map(|eta| dielectric_reflectance(meeting.cos_i, eta))
         };
-        let shares = [reflected, SampledSpectrum::ONE - reflected];
-        let [near, far] = self.divide(branch, shares, choice);
-        let near = near.map(|branch| mirrored(branch, meeting, reflected));
-        let far = far.and_then(|mut branch| {
-            branch.throughput *= shares[1];
-            self.refracted(branch, meeting, eta, beyond, lane)
-        });
-        [near, far]
+        let refracted = SampledSpectrum::ONE - reflected;
+        let [near, far] = self.divide(branch, [&reflected, &refracted], choice);
+        if !near {
+            branch.throughput *= refracted;
+            return Ways::one(far && self.refract(branch, meeting, eta, beyond, lane));
+        }
+        let mut parted = 0.0;
+        if far {
+            let mut other = branch.part();
+            other.throughput *= refracted;
+            if self.refract(&mut other, meeting, eta, beyond, lane) {
+                parted = self.wait(other);
+            }
+        }
+        mirror(branch, meeting, &reflected);
+        Ways { goes_on: true, parted }
     }
 
-    /// Refract a branch. Where lanes go different ways, one of them goes on in the place of all:
-    /// chosen by what the eye gets of it, and weighted so that the mean is that of all lanes.
-    fn refracted(
+    /// Refract a branch; whether it can be. Where lanes go different ways, one of them goes on in the
+    /// place of all: chosen by what the eye gets of it, and weighted so that the mean is that of all
+    /// lanes.
+    fn refract(
         &self,
-        mut branch: Branch,
+        branch: &mut Branch,
         meeting: &Meeting,
         eta: SampledSpectrum,
-        beyond: Interior,
+        beyond: &Interior,
         u: f64,
-    ) -> Option<Branch> {
+    ) -> bool {
         let mut hero = 0;
         if !eta.is_even() {
             let seen = self.weight(branch.throughput);
             if seen <= 0.0 {
-                return None;
+                return false;
             }
             hero = pick(&self.lanes(branch.throughput), u);
             branch.throughput = SampledSpectrum::ZERO;
             branch.throughput.0[hero] = seen / self.visibility.0[hero];
         }
-        let wo = meeting.on_far_side(refract(meeting.wi, meeting.normal, eta.0[hero])?);
-        let origin = meeting.hit.point.leave_along(wo);
-        Some(branch.deflected(origin, wo, beyond))
+        let Some(wo) = refract(meeting.wi, meeting.normal, eta.0[hero]) else {
+            return false;
+        };
+        let wo = meeting.on_far_side(wo);
+        branch.deflect(meeting.hit.point.leave_along(wo), wo);
+        branch.interior = *beyond;
+        true
     }
 
     /// The ways on at opaque matter: mirrored and scattered.
-    pub(super) fn answer(&mut self, mut branch: Branch, meeting: &Meeting) -> Ways {
+    pub(super) fn answer(&mut self, branch: &mut Branch, meeting: &Meeting) -> Ways {
         let material = self.scene.material_of(meeting.hit.body);
         let medium_index = self.index(&branch.interior);
         let point = &meeting.hit.point;
         let bsdf = material.bsdf(point.position, point.normal, medium_index, self.wavelengths);
-        let Some(mirror) = bsdf.mirror(meeting.cos_i) else {
+        let Some(mirrored) = bsdf.mirror(meeting.cos_i) else {
             let vertex = Vertex::on_surface(meeting, bsdf, branch.interior);
-            return [None, self.scatter(branch, &vertex)];
+            return Ways::one(self.scatter(branch, &vertex));
         };
         if !bsdf.scatters() {
-            return [Some(mirrored(branch, meeting, mirror)), None];
+            mirror(branch, meeting, &mirrored);
+            return Ways::one(true);
         }
-        let wi = Vertex::local(meeting);
         let [choice, ..] = branch.sampler.next_4d();
-        let [near, rest] = self.divide(branch, [mirror, bsdf.albedo(wi)], choice);
-        let near = near.map(|branch| mirrored(branch, meeting, mirror));
-        let rest = rest.and_then(|branch| {
+        let scattered = bsdf.albedo(Vertex::local(meeting));
+        let [near, rest] = self.divide(branch, [&mirrored, &scattered], choice);
+        if !(near || rest) {
+            return Ways::default();
+        }
+        let mut parted = 0.0;
+        if rest {
             let vertex = Vertex::on_surface(meeting, bsdf, branch.interior);
-            self.scatter(branch, &vertex)
-        });
-        [near, rest]
+            if !near {
+                return Ways::one(self.scatter(branch, &vertex));
+            }
+            let mut other = branch.part();
+            if self.scatter(&mut other, &vertex) {
+                parted = self.wait(other);
+            }
+        }
+        mirror(branch, meeting, &mirrored);
+        Ways { goes_on: true, parted }
     }
 
     /// The refractive index of what fills a place.
@@ -100,9 +124,8 @@ impl PathWalk<'_> {
     }
 }
 
-fn mirrored(mut branch: Branch, meeting: &Meeting, reflectance: SampledSpectrum) -> Branch {
-    branch.throughput *= reflectance;
+fn mirror(branch: &mut Branch, meeting: &Meeting, reflectance: &SampledSpectrum) {
+    branch.throughput *= *reflectance;
     let wo = meeting.on_near_side(reflect(meeting.wi, meeting.normal));
-    let interior = branch.interior;
-    branch.deflected(meeting.hit.point.leave_along(wo), wo, interior)
+    branch.deflect(meeting.hit.point.leave_along(wo), wo);
 }

@@ -120,36 +120,36 @@ impl<'a> PathWalk<'a> {
     fn run(mut self) {
         let started = self.pending.iter().map(|branch| self.worth(branch.throughput)).sum();
         self.tally.ledger.start(started);
-        while let Some(branch) = self.pending.pop() {
-            self.follow(branch);
+        while let Some(mut branch) = self.pending.pop() {
+            while self.step(&mut branch) {}
         }
     }
 
-    /// One segment, and the light and the ways on at its end.
-    fn follow(&mut self, mut branch: Branch) {
-        let event = self.next_event(&mut branch);
+    /// One segment, and the light and the ways on at its end; whether the branch goes on.
+    fn step(&mut self, branch: &mut Branch) -> bool {
+        let event = self.next_event(branch);
         let before = self.worth(branch.throughput);
         match event {
-            Event::Lost => {}
+            Event::Lost => false,
             Event::Escape => {
-                self.leave(&branch);
+                self.leave(branch);
                 self.tally.ledger.escape(before);
+                false
             }
             Event::Scattering(at) => {
                 let wi = -branch.ray.direction;
                 let vertex = Vertex::in_body(at.position, wi, at.anisotropy, branch.interior);
-                let ways = [self.scatter(branch, &vertex), None];
-                self.go_on(ways, before, None);
+                let ways = Ways::one(self.scatter(branch, &vertex));
+                self.go_on(branch, &ways, before, None)
             }
             Event::Surface(meeting) => {
-                self.see_emission(&branch, &meeting);
-                let body = meeting.hit.body;
+                self.see_emission(branch, &meeting);
                 let ways = self.answer(branch, &meeting);
-                self.go_on(ways, before, Some(body));
+                self.go_on(branch, &ways, before, Some(meeting.hit.body))
             }
             Event::Interface(meeting, face, beyond) => {
-                let ways = self.cross(branch, &meeting, face, beyond);
-                self.go_on(ways, before, None);
+                let ways = self.cross(branch, &meeting, face, &beyond);
+                self.go_on(branch, &ways, before, None)
             }
         }
     }
@@ -207,28 +207,46 @@ impl<'a> PathWalk<'a> {
         Event::Lost
     }
 
-    /// Queue the ways on, and book what stayed in `body` (or in the choices at random).
-    fn go_on(&mut self, ways: Ways, before: f64, body: Option<BodyId>) {
-        let mut after = 0.0;
-        for mut branch in ways.into_iter().flatten() {
-            let weight = self.weight(branch.throughput);
-            if weight <= 0.0 {
-                continue;
-            }
-            let worth = self.worth(branch.throughput);
-            after += worth;
-            branch.depth += 1;
-            if branch.depth > self.settings.max_depth {
-                self.tally.cut_by_depth += 1;
-                self.tally.ledger.cut(worth);
-            } else if self.survives(&mut branch, weight) {
-                self.pending.push(branch);
-            }
-        }
+    /// Whether the branch goes on, and book what stayed in `body` (or in the choices at random).
+    fn go_on(
+        &mut self,
+        branch: &mut Branch,
+        ways: &Ways,
+        before: f64,
+        body: Option<BodyId>,
+    ) -> bool {
+        let (worth, lives) = if ways.goes_on { self.enter(branch) } else { (0.0, false) };
+        let after = worth + ways.parted;
         match body {
             Some(body) => self.tally.ledger.absorb(body, before, after),
             None => self.tally.ledger.chance(before, after),
         }
+        lives
+    }
+
+    /// Let a branch that parted wait; what the ledger books of it.
+    fn wait(&mut self, mut branch: Branch) -> f64 {
+        let (worth, lives) = self.enter(&mut branch);
+        if lives {
+            self.pending.push(branch);
+        }
+        worth
+    }
+
+    /// What the ledger books of a branch that turned, and whether it is followed.
+    fn enter(&mut self, branch: &mut Branch) -> (f64, bool) {
+        let weight = self.weight(branch.throughput);
+        if weight <= 0.0 {
+            return (0.0, false);
+        }
+        let worth = self.worth(branch.throughput);
+        branch.depth += 1;
+        if branch.depth > self.settings.max_depth {
+            self.tally.cut_by_depth += 1;
+            self.tally.ledger.cut(worth);
+            return (worth, false);
+        }
+        (worth, self.survives(branch, weight))
     }
 
     /// Russian roulette: end a branch of little weight, or make it stand for those that ended.
@@ -245,24 +263,23 @@ impl<'a> PathWalk<'a> {
         lives
     }
 
-    /// Follow two ways on that carry about `shares` of the throughput: both while that matters, else
-    /// one, by chance in proportion to what the eye gets of it, in the place of both.
-    fn divide(&self, mut branch: Branch, shares: [SampledSpectrum; 2], u: f64) -> Ways {
-        let [first, second] = shares.map(|share| self.weight(branch.throughput * share));
+    /// Which of two ways on, that carry about `shares` of the throughput, are followed: both while
+    /// that matters, else one, by chance in proportion to what the eye gets of it, in the place of
+    /// both.
+    fn divide(&self, branch: &mut Branch, shares: [&SampledSpectrum; 2], u: f64) -> [bool; 2] {
+        let [first, second] = shares.map(|share| self.weight(branch.throughput * *share));
         if branch.splits < self.settings.split_depth && first.min(second) > 0.0 {
-            branch.splits += 1;
-            let other = Branch { sampler: branch.sampler.fork(branch.splits), ..branch.clone() };
-            return [Some(branch), Some(other)];
+            return [true, true];
         }
         let probability = first / (first + second);
         if u < probability {
             branch.throughput *= 1.0 / probability;
-            [Some(branch), None]
+            [true, false]
         } else if second > 0.0 {
             branch.throughput *= 1.0 / (1.0 - probability);
-            [None, Some(branch)]
+            [false, true]
         } else {
-            [None, None]
+            [false, false]
         }
     }
 
