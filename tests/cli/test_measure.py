@@ -110,7 +110,7 @@ class Meter:
 def meter(monkeypatch: pytest.MonkeyPatch) -> Meter:
     """Put a meter in the engine's place, and draw no plots, which take seconds."""
     found = Meter()
-    monkeypatch.setattr("lamplit.report.photometry.files.draw_plots", lambda results: [])
+    monkeypatch.setattr("lamplit.report.photometry.files.draw_plots", lambda _: [])
     monkeypatch.setattr(engine, "measure", found.measure)
     return found
 

@@ -78,11 +78,9 @@ def measure(
 
 
 def _tell(output: Path, results: Results, files: dict[str, str]) -> None:
-    from rich.console import Console
-
     from lamplit.cli.closing import show_table
 
-    print_verdicts(Console(highlight=False, soft_wrap=True), results)
+    print_verdicts(results)
     numbers = {
         "paths": f"{results.paths / 1e6:.4g} million in {results.elapsed_s:.1f} s, "
         f"{results.paths / max(results.elapsed_s, 1e-9) / 1e6:.3g} million/s"

@@ -15,8 +15,6 @@ import typer
 from lamplit.errors import LamplitError
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
     from lamplit.cli.functions import Asked
     from lamplit.cli.stopping import Stop
     from lamplit.engine.measurement import Measurement
@@ -26,7 +24,7 @@ if TYPE_CHECKING:
 
 #: With --until-decided alone, no more paths than these: what lies on a limit is never decided.
 _MOST_UNDECIDED = 1 << 30
-#: A table of findings has this width at least: narrower ones break every line of it.
+#: In a log, a table of findings has this width at least: narrower ones break every line of it.
 _TABLE_WIDTH = 120
 #: What --distance says instead of a number.
 _FAR = "far"
@@ -241,14 +239,18 @@ def _check(budget: Budget, functions: Sequence[Asked]) -> None:
         )
 
 
-def print_verdicts(console: Console, results: Results) -> None:
+def print_verdicts(results: Results) -> None:
     """Print the table of each function, and below all of them the verdicts."""
+    from rich.console import Console
     from rich.markup import escape
     from rich.text import Text
 
     from lamplit.report.photometry.style import MARKS
     from lamplit.report.photometry.table import STYLES, findings_table, in_words, spots_table
 
+    console = Console(highlight=False, soft_wrap=True)
+    if not console.is_terminal:
+        console.width = max(console.width, _TABLE_WIDTH)
     for one in results.functions:
         console.print(f"\n[bold]{escape(one.name)}[/bold]", end="")
         if one.verdict is None:
@@ -257,7 +259,7 @@ def print_verdicts(console: Console, results: Results) -> None:
             continue
         chosen = "" if not one.verdict.production else ", conformity of production"
         console.print(f": {escape(one.verdict.title)}, {escape(one.verdict.rule)}{chosen}\n")
-        console.print(findings_table(one), width=max(console.width, _TABLE_WIDTH))
+        console.print(findings_table(one))
     console.print()
     for one in results.functions:
         if one.verdict is not None:

@@ -113,10 +113,7 @@ def _refuse(budget: Budget, *, given: bool) -> None:
 
 
 def _tell(results: Results, output: Path) -> None:
-    from rich.console import Console
-
     from lamplit.cli.measuring import print_verdicts
 
-    console = Console(highlight=False, soft_wrap=True)
-    print_verdicts(console, results)
-    console.print(f"\nOpen {output}", markup=False)
+    print_verdicts(results)
+    print(f"\nOpen {output}")

@@ -207,10 +207,13 @@ def _name_some(axes: Axes, observed: Observed, xy: Array, lit: Flags) -> None:
     for place in dict.fromkeys((start, farthest)):
         h_deg, v_deg = float(observed.spot_h_deg[place]), float(observed.spot_v_deg[place])
         name = "HV" if h_deg == v_deg == 0.0 else f"H {angle(h_deg)}, V {angle(v_deg)}"
+        left, right = axes.get_xlim()
         above = (place == start) == (xy[farthest, 0] <= xy[start, 0])
+        inward = xy[place, 0] < left + 0.45 * (right - left)
         axes.annotate(
-            name, xy[place], (6, 5) if above else (-6, -11), textcoords="offset points",
-            fontsize=7.5, color=INK, family=FONT, zorder=6, ha="left" if above else "right",
+            name, xy[place], (6, 5) if above else (6 if inward else -6, -11), color=INK,
+            textcoords="offset points", fontsize=7.5, family=FONT, zorder=6,
+            ha="left" if above or inward else "right",
         )  # fmt: skip
 
 

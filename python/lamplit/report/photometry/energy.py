@@ -142,10 +142,23 @@ def _draw_band(axes: Axes, band: Band, wide: float, total: float) -> None:
     axes.fill_between(across, upper, upper + wide, color=band.ink, alpha=0.55, lw=0)
     axes.fill_between([5.5, 5.62], band.arrives, band.arrives + wide, color=band.ink, lw=0)
     middle = band.arrives + 0.5 * wide
-    write(axes, 7.35, middle, f"{band.flux_lm:.4g} lm", size=8.5, align="right", middle=True)
-    write(axes, 6.62, middle, f"{100 * band.flux_lm / total:.3g} %", size=8.5, bold=True,
+    write(axes, 7.35, middle, _lm(band.flux_lm), size=8.5, align="right", middle=True)
+    write(axes, 6.62, middle, _percent(band.flux_lm / total), size=8.5, bold=True,
           align="right", middle=True)  # fmt: skip
     write(axes, 7.5, middle, shortened(band.name, 28), size=8.5, ink=INK, middle=True)
+
+
+def _lm(flux: float) -> str:
+    return f"{flux:.4g} lm" if flux >= 1.0 else f"{flux:.2g} lm"
+
+
+def _percent(share: float) -> str:
+    """Return a share in percent, to a tenth.
+
+    >>> _percent(0.408), _percent(3e-4)
+    ('40.8 %', '< 0.1 %')
+    """
+    return f"{100.0 * share:.1f} %" if share >= 0.0005 else "< 0.1 %"
 
 
 def _write_sum(

@@ -140,18 +140,30 @@ def _on_axis(measurement: Measurement, one: Asked) -> Spectrum | None:
 
 
 def _spectra(measurement: Measurement) -> tuple[Spectrum, ...]:
-    """Return the spectra of the sources by light group: what each emits, and what leaves."""
-    return tuple(
+    """Return the spectra of the sources by light group: what is emitted, and what leaves."""
+    nm = np.arange(380.0, 780.5)
+    emitted = {
+        own.emission.group or own.name: own.emission.source
+        for own in measurement.scene.objects
+        if own.emission is not None and own.emission.source is not None
+    }
+    shapes = [
+        Spectrum(f"{group}, the source", nm, measurement.scene.resolve_source(source)(nm), "")
+        for group, source in emitted.items()
+        if measurement.light is None
+    ]
+    leaving = (
         Spectrum(f"{name}, leaving the lamp", measurement.band_centres_nm, values, "W/nm")
         for name, values in zip(measurement.groups, measurement.out_spectra, strict=True)
         if values.size and values.any()
     )
+    return (*shapes, *leaving)
 
 
 def _geometry(measurement: Measurement) -> dict[str, str]:
     gonio = measurement.goniometer
     distance = gonio.distance_m
-    centre = ", ".join(f"{at:g}" for at in gonio.centre_mm)
+    centre = ", ".join(f"{at:.1f}".replace("-", "−") for at in gonio.centre_mm)
     return {
         "distance": "far field" if distance is None else f"{distance:g} m",
         "receiver": f"{gonio.receiver_deg:.3g}° full angle",

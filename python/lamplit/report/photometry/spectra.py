@@ -30,7 +30,7 @@ def draw_spectra(spectra: Sequence[Spectrum], *, title: str) -> Figure | None:
     if not lit:
         return None
     figure = new_figure(9.6, 3.6)
-    head(figure, title, "each relative to its own peak, whose value stands in the legend")
+    head(figure, title, "each relative to its own peak, whose value stands beside it")
     axes = figure.add_axes((0.075, 0.19, 0.62, 0.60))
     dress(axes, x="", y="share of the peak")
     for place, one in enumerate(lit[: len(_INKS)]):
@@ -39,7 +39,8 @@ def draw_spectra(spectra: Sequence[Spectrum], *, title: str) -> Figure | None:
         axes.plot(
             one.wavelengths_nm, one.values / peak, color=_INKS[place], linewidth=1.3,
             linestyle="-" if place < 4 else (0, (5, 2)),
-            label=f"{shortened(one.name, 30)}\n{peak:.3g} {one.unit} at {at:.0f} nm",
+            label=f"{shortened(one.name, 30)}\n{f'{peak:.3g} {one.unit}' if one.unit else 'relative'}"
+            f", peak at {at:.0f} nm",
         )  # fmt: skip
     axes.set(xlim=(380.0, 780.0), ylim=(0.0, 1.05))
     axes.set_xticks(np.arange(400, 781, 50), [])

@@ -121,7 +121,8 @@ def got(finding: Finding) -> str:
     if finding.required is None and not finding.unit:
         return ""
     if finding.unit == "xy":
-        return f"{finding.got:.4f} xy".replace("-", "−")
+        digits = ".4f" if abs(finding.got) >= 5e-5 else ".1g"
+        return f"{finding.got:{digits}} xy".replace("-", "−")
     if finding.unit == "1":
         return f"{finding.got:.3g}"
     return f"{cd(finding.got)} {finding.unit}".strip()
