@@ -16,7 +16,7 @@ from lamplit.report.photometry import table
 from lamplit.report.photometry.colour import chromaticity_covariance, chromaticity_errors
 from lamplit.report.photometry.plots import Plot, draw_plots
 from lamplit.report.photometry.results import tally
-from lamplit.report.photometry.style import MARKS, cd
+from lamplit.report.photometry.style import MARKS, cd, spread
 
 if TYPE_CHECKING:
     from lamplit.report.photometry.results import FunctionResults, Results
@@ -155,14 +155,14 @@ def _on_axis(one: FunctionResults) -> dict[str, str]:
         return {}
     place = int(at[0])
     facts = {
-        "at HV": f"{cd(float(seen.spot_cd[place]))} ± "
-        f"{2.0 * float(seen.spot_standard_error_cd[place]):.2g} cd"
+        "at HV": f"{cd(float(seen.spot_cd[place]))} "
+        f"{spread(2.0 * float(seen.spot_standard_error_cd[place]))} cd"
     }
     xy, covariance = chromaticity_covariance(seen.spot_xyz, seen.spot_xyz_covariance)
     if np.isfinite(xy[place]).all():
-        spread = 2.0 * chromaticity_errors(covariance[place])
+        two_sigma = 2.0 * chromaticity_errors(covariance[place])
         facts["x"], facts["y"] = (
-            f"{value:.4f} ± {error:.1g}" for value, error in zip(xy[place], spread, strict=True)
+            f"{value:.4f} ± {error:.1g}" for value, error in zip(xy[place], two_sigma, strict=True)
         )
     return facts
 
@@ -171,7 +171,7 @@ def _spots(one: FunctionResults) -> list[tuple[str, str, str, str]]:
     seen = one.observed
     columns = (seen.spot_h_deg, seen.spot_v_deg, seen.spot_cd, seen.spot_standard_error_cd)
     return [
-        (table.angle(float(h)), table.angle(float(v)), cd(float(got)), f"± {2.0 * error:.2g}")
+        (table.angle(float(h)), table.angle(float(v)), cd(float(got)), spread(2.0 * float(error)))
         for h, v, got, error in zip(*columns, strict=True)
     ]
 

@@ -35,12 +35,12 @@ def draw_spectra(spectra: Sequence[Spectrum], *, title: str) -> Figure | None:
     dress(axes, x="", y="share of the peak")
     for place, one in enumerate(lit[: len(_INKS)]):
         peak = float(one.values.max())
+        height = f"{peak:.3g} {one.unit}" if one.unit else "relative"
         at = float(one.wavelengths_nm[int(one.values.argmax())])
         axes.plot(
             one.wavelengths_nm, one.values / peak, color=_INKS[place], linewidth=1.3,
             linestyle="-" if place < 4 else (0, (5, 2)),
-            label=f"{shortened(one.name, 30)}\n{f'{peak:.3g} {one.unit}' if one.unit else 'relative'}"
-            f", peak at {at:.0f} nm",
+            label=f"{shortened(one.name, 30)}\n{height}, peak at {at:.0f} nm",
         )  # fmt: skip
     axes.set(xlim=(380.0, 780.0), ylim=(0.0, 1.05))
     axes.set_xticks(np.arange(400, 781, 50), [])

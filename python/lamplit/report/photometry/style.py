@@ -132,6 +132,15 @@ def png(figure: Figure) -> bytes:
     return held.getvalue()
 
 
+def spread(two_sigma: float) -> str:
+    """Return an uncertainty to two digits.
+
+    >>> spread(0.4812), spread(1.6), spread(163.2)
+    ('± 0.48', '± 1.6', '± 163')
+    """
+    return f"± {two_sigma:.0f}" if two_sigma >= 99.5 else f"± {two_sigma:.2g}"
+
+
 def cd(value: float) -> str:
     """Return an intensity as a lamp engineer writes it, three digits at least.
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lamplit.report.photometry.results import worst_finding
-from lamplit.report.photometry.style import MARKS, cd
+from lamplit.report.photometry.style import MARKS, cd, spread
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -143,7 +143,7 @@ def margin(finding: Finding) -> str:
 
 def two_sigma(finding: Finding) -> str:
     """Return "± 2 σ" of what was measured, or nothing where nothing is uncertain."""
-    return f"± {2.0 * finding.standard_error:.2g}" if finding.standard_error > 0.0 else ""
+    return spread(2.0 * finding.standard_error) if finding.standard_error > 0.0 else ""
 
 
 def more_paths(finding: Finding) -> str:
@@ -167,8 +167,8 @@ def in_words(verdict: Verdict) -> str:
         f"{finding.requirement}{f' ({where})' if where and where != finding.requirement else ''}"
     )
     if finding.required is not None and finding.margin_percent is not None:
-        spread = two_sigma(finding)
-        words += f": {got(finding)}{f' {spread}' if spread else ''}, required {required(finding)}"
+        scatter = two_sigma(finding)
+        words += f": {got(finding)}{f' {scatter}' if scatter else ''}, required {required(finding)}"
         words += f", margin {margin(finding)}" if margin(finding) else ""
     elif finding.remark:
         words += f": {finding.remark}"
@@ -219,7 +219,9 @@ def spots_table(observed: Observed) -> Table:
         observed.spot_h_deg, observed.spot_v_deg, observed.spot_cd, observed.spot_standard_error_cd,
     )  # fmt: skip
     for h, v, intensity, error in zip(*columns, strict=True):
-        table.add_row(angle(float(h)), angle(float(v)), cd(float(intensity)), f"± {2 * error:.2g}")
+        table.add_row(
+            angle(float(h)), angle(float(v)), cd(float(intensity)), spread(2.0 * float(error))
+        )
     return table
 
 
