@@ -21,6 +21,7 @@ __all__ = [
     "Matter",
     "PathMethod",
     "Photometer",
+    "Rays",
     "Receivers",
     "Render",
     "Scene",
@@ -271,16 +272,10 @@ class Receivers:
     ) -> Receivers: ...
 
 @final
-class Photometer:
-    @staticmethod
-    def shining(
-        scene: Scene, receivers: Receivers, method: PathMethod, *, seed: int = 1
-    ) -> Photometer: ...
-    @staticmethod
-    def rays(
+class Rays:
+    def __new__(
+        cls,
         scene: Scene,
-        receivers: Receivers,
-        method: PathMethod,
         positions_mm: _Array,
         directions: _Array,
         fluxes: _Array,
@@ -288,7 +283,23 @@ class Photometer:
         spectrum: _Spectrum | None = None,
         wavelengths: NDArray[np.uint32] | None = None,
         step_nm: float = 1.0,
+        group: int = 0,
+    ) -> Rays: ...
+
+@final
+class Photometer:
+    @staticmethod
+    def shining(
+        scene: Scene,
+        receivers: Receivers,
+        method: PathMethod,
+        *,
+        rays: Sequence[Rays] = ...,
         seed: int = 1,
+    ) -> Photometer: ...
+    @staticmethod
+    def rays(
+        scene: Scene, receivers: Receivers, method: PathMethod, rays: Rays, *, seed: int = 1
     ) -> Photometer: ...
     @staticmethod
     def beam(

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ import pytest
 import lamplit as ll
 from lamplit.engine import BeamLight, MeasureInterrupted, Plane, RayLight
 from lamplit.engine.measurement import Measurement
+from lamplit.photometry.rays import RaySet, write_tm25
 from lamplit.scene import Scene
 
 Table = dict[str, Any]
@@ -329,3 +331,20 @@ def test_the_dataset_has_directions_wavelengths_and_units(lamp_of: Callable[...,
     # Nearly all of the red light lies from 600 to 650 nm.
     share = own.sel(grid_wavelength=slice(600, 650)).sum() / own.sum()
     assert float(share) > 0.9
+
+
+def test_ray_files_shine_beside_objects(tmp_path: Path, lamp_of: Callable[..., Scene]) -> None:
+    ways = np.array([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8]])
+    rays = RaySet(np.ones((2, 3)), ways, np.array([30.0, 10.0]), quantity="luminous")
+    write_tm25(tmp_path / "led.tm25ray", rays)
+    led = {"name": "led", "file": "led.tm25ray", "source": "red-led-624", "group": "stop"}
+    scene = lamp_of(disc(emission={"group": "tail"}), ray_files=[led])
+    spots = [(0.0, 0.0), (np.degrees(np.arcsin(0.6)), 0.0)]
+    found = ll.measure(scene, spots=spots, grid=COARSE, receiver_deg=0.5, paths=1 << 15)
+    assert found.emitted_lm["stop"] == pytest.approx(40.0, rel=1e-9)
+    assert found.emitted_lm["tail"] == pytest.approx(100.0, rel=1e-9)
+    assert found.out_lm["stop"] == pytest.approx(40.0, rel=0.01)
+    assert found.out_lm["tail"] == pytest.approx(100.0, rel=0.01)
+    lumens = found.observed({"stop": 1.0}).spot_cd * found.goniometer.spot_sr
+    assert lumens == pytest.approx([30.0, 10.0], rel=0.03)
+    assert set(found.ledgers) >= {"stop", "tail"}

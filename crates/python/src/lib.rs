@@ -37,7 +37,7 @@ mod _core {
     #[pymodule_export]
     use super::outcome::Render;
     #[pymodule_export]
-    use super::photometer::{Photometer, Receivers};
+    use super::photometer::{Photometer, Rays, Receivers};
     #[pymodule_export]
     use super::render::{HallMethod, PathMethod, Scene};
 

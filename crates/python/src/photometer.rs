@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 OR MIT
 //! `Photometer`: light walked from its sources, and what receivers caught of it, as arrays.
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use lamplit_core::film::{self, DirectionCells, GroupSums, PlaneMap, Spot, Spots, Xyz};
@@ -72,6 +72,47 @@ impl Receivers {
             spot_bands,
             cell_bands,
         }))
+    }
+}
+
+/// Light given as rays.
+#[pyclass(frozen, module = "lamplit._core")]
+pub struct Rays(Arc<RaySet>);
+
+#[pymethods]
+impl Rays {
+    /// With one `spectrum`, fluxes in lm; with the numbers of the rays' own `wavelengths` among those
+    /// of the scene's pictures, `step_nm` apart, fluxes in W.
+    #[new]
+    #[pyo3(signature = (
+        scene, positions_mm, directions, fluxes, *, spectrum=None, wavelengths=None, step_nm=1.0,
+        group=0
+    ))]
+    fn new(
+        scene: &Scene,
+        positions_mm: PyReadonlyArray2<'_, f64>,
+        directions: PyReadonlyArray2<'_, f64>,
+        fluxes: PyReadonlyArray1<'_, f64>,
+        spectrum: Option<Spectrum<'_>>,
+        wavelengths: Option<PyReadonlyArray1<'_, u32>>,
+        step_nm: f64,
+        group: usize,
+    ) -> PyResult<Self> {
+        let (positions, ways) = (triples(&positions_mm)?, triples(&directions)?);
+        let fluxes = fluxes.as_array().to_vec();
+        let luminosity = &scene.world().colour_matching[1];
+        let set = match (spectrum, wavelengths) {
+            (Some(spectrum), None) => {
+                let spectrum = table(&spectrum)?;
+                RaySet::of_one_spectrum(&positions, &ways, fluxes, &spectrum, luminosity)
+            }
+            (None, Some(own)) => {
+                let own = (own.as_array().to_vec(), step_nm);
+                RaySet::of_wavelengths(&positions, &ways, fluxes, own, luminosity)
+            }
+            _ => return Err(value_error("rays have one spectrum, or wavelengths of their own")),
+        };
+        Ok(Self(Arc::new(set.map_err(value_error)?.in_group(group))))
     }
 }
 
@@ -152,55 +193,35 @@ impl Photometer {
 
 #[pymethods]
 impl Photometer {
-    /// For the light of all bodies that shine.
+    /// For the light of all bodies that shine, and of `rays`.
     #[staticmethod]
-    #[pyo3(signature = (scene, receivers, method, *, seed=1))]
+    #[pyo3(signature = (scene, receivers, method, *, rays=Vec::new(), seed=1))]
     fn shining(
         py: Python<'_>,
         scene: Py<Scene>,
         receivers: &Receivers,
         method: &PathMethod,
+        rays: Vec<PyRef<'_, Rays>>,
         seed: u64,
     ) -> PyResult<Self> {
         let shining = py.detach(|| Shining::of(&scene.get().world()));
-        Self::of(scene, LightSource::Shining(shining), receivers, method, seed)
+        let mut parts = vec![LightSource::Shining(shining)];
+        parts.extend(rays.iter().map(|rays| LightSource::Rays(rays.0.clone())));
+        let source = LightSource::several(&scene.get().world(), parts).map_err(value_error)?;
+        Self::of(scene, source, receivers, method, seed)
     }
 
-    /// For given rays: with one `spectrum`, fluxes in lm, or with the numbers of the rays' own
-    /// `wavelengths` among the picture's, `step_nm` apart, fluxes in W.
+    /// For given rays alone; all are counted to one light group.
     #[staticmethod]
-    #[pyo3(signature = (
-        scene, receivers, method, positions_mm, directions, fluxes, *, spectrum=None,
-        wavelengths=None, step_nm=1.0, seed=1
-    ))]
+    #[pyo3(signature = (scene, receivers, method, rays, *, seed=1))]
     fn rays(
         scene: Py<Scene>,
         receivers: &Receivers,
         method: &PathMethod,
-        positions_mm: PyReadonlyArray2<'_, f64>,
-        directions: PyReadonlyArray2<'_, f64>,
-        fluxes: PyReadonlyArray1<'_, f64>,
-        spectrum: Option<Spectrum<'_>>,
-        wavelengths: Option<PyReadonlyArray1<'_, u32>>,
-        step_nm: f64,
+        rays: &Rays,
         seed: u64,
     ) -> PyResult<Self> {
-        let (positions, ways) = (triples(&positions_mm)?, triples(&directions)?);
-        let fluxes = fluxes.as_array().to_vec();
-        let luminosity = scene.get().world().colour_matching[1].clone();
-        let set = match (spectrum, wavelengths) {
-            (Some(spectrum), None) => {
-                let spectrum = table(&spectrum)?;
-                RaySet::of_one_spectrum(&positions, &ways, fluxes, &spectrum, &luminosity)
-            }
-            (None, Some(own)) => {
-                let own = (own.as_array().to_vec(), step_nm);
-                RaySet::of_wavelengths(&positions, &ways, fluxes, own, &luminosity)
-            }
-            _ => return Err(value_error("rays have one spectrum, or wavelengths of their own")),
-        };
-        let source = LightSource::Rays(set.map_err(value_error)?);
-        Self::of(scene, source, receivers, method, seed)
+        Self::of(scene, LightSource::Rays(rays.0.clone()), receivers, method, seed)
     }
 
     /// For a beam along `travels`, from a disc of an angular radius in rad, that gives a face square

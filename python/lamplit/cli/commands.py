@@ -16,6 +16,8 @@ COMMANDS = {
     "render": "Picture of the lamp: PNG, float EXR and numbers.",
     "compare": "RGB against spectral, side by side, with the colour differences.",
     "mix": "Lit, unlit, dimmed: weigh and add the light groups of a render.",
+    "measure": "Candela, colour and verdict of the lamp: tables, IES, plots.",
+    "report": "One self-contained HTML page: verdict, test points, plots.",
     "check": "Is this scene sound: meshes, overlaps, spectra, memory.",
     "lamp": "Write a parametric example lamp to start from.",
     "materials": "What the library holds, with its references.",

@@ -13,6 +13,7 @@ from lamplit.engine.carrier import SpectralCarrier
 from lamplit.engine.receivers import Goniometer
 from lamplit.errors import LamplitError
 from lamplit.scene import Scene
+from lamplit.scene.shining import light_groups
 from lamplit.spectrum import SpectralDistribution
 
 
@@ -75,13 +76,15 @@ class Laboratory:
         """
         match light:
             case None:
-                return _core.Photometer.shining(
-                    self.world, self.goniometer.for_core(), self.method, seed=self.seed
-                )
+                return self._shining()
             case BeamLight():
                 return self._beam(light)
             case RayLight():
-                return self._rays(light)
+                receivers = self.goniometer.for_core()
+                rays = self._rays(light)
+                return _core.Photometer.rays(
+                    self.world, receivers, self.method, rays, seed=self.seed
+                )
 
     def _beam(self, light: BeamLight) -> _core.Photometer:
         spectrum = self._spectrum(light.source)
@@ -97,7 +100,7 @@ class Laboratory:
             seed=self.seed,
         )
 
-    def _rays(self, light: RayLight) -> _core.Photometer:
+    def _rays(self, light: RayLight, group: int = 0) -> _core.Rays:
         spectrum: NDArray[np.float64] | None = None
         wavelengths: NDArray[np.uint32] | None = None
         if light.spectrum is not None and light.wavelengths_nm is None:
@@ -107,17 +110,36 @@ class Laboratory:
             wavelengths = _wavelength_numbers(own, self.carrier)
         else:
             raise LamplitError("rays have either one spectrum, or wavelengths_nm of their own")
-        return _core.Photometer.rays(
+        return _core.Rays(
             self.world,
-            self.goniometer.for_core(),
-            self.method,
             np.ascontiguousarray(light.positions_mm, np.float64),
             np.ascontiguousarray(light.directions, np.float64),
             np.ascontiguousarray(light.flux, np.float64),
             spectrum=spectrum,
             wavelengths=wavelengths,
             step_nm=self.carrier.step_nm,
-            seed=self.seed,
+            group=group,
+        )
+
+    def _shining(self) -> _core.Photometer:
+        """Return a photometer for the objects that shine, and for the scene's ray files."""
+        groups = light_groups(self.scene)
+        rays = [
+            self._rays(
+                RayLight(
+                    positions_mm=own.positions_mm,
+                    directions=own.directions,
+                    flux=own.flux,
+                    spectrum=own.spectrum,
+                    wavelengths_nm=own.wavelengths_nm,
+                ),
+                groups.index(own.group),
+            )
+            for own in self.scene.resolved_rays()
+        ]
+        receivers = self.goniometer.for_core()
+        return _core.Photometer.shining(
+            self.world, receivers, self.method, rays=rays, seed=self.seed
         )
 
     def _spectrum(self, source: SpectralDistribution | str) -> SpectralDistribution:

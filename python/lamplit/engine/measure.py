@@ -285,8 +285,8 @@ class _Run:
 def _reached(
     result: Measurement, error: float | None, enough: Callable[[Measurement], bool] | None
 ) -> bool:
-    is_fine = error is None or result.relative_error <= error
-    return is_fine and (enough is None or enough(result))
+    is_enough = enough is None or enough(result)
+    return is_enough and (error is None or result.relative_error <= error)
 
 
 def _told(fault: str, scene: Scene, gonio: Goniometer, light: Light | None) -> SceneError:

@@ -176,7 +176,7 @@ fn rays_go_where_they_point_with_their_flux_and_their_wavelength() {
     let spots = [0.0, 20.0, 50.0].map(|degrees| spot(degrees, 0.0, 1.0));
     let fluxes = vec![1.0, 3.0, 0.0];
     let set = RaySet::of_one_spectrum(&positions, &ways, fluxes, &flat(0.3), luminosity).unwrap();
-    let source = LightSource::Rays(set);
+    let source = LightSource::Rays(set.into());
     let got = measure_by(&scene, source, &spots, round(&spots), (1 << 14, FORWARD));
     let solid_angle = TAU * (1.0 - 0.5_f64.to_radians().cos());
     for (at, flux) in [1.0, 3.0, 0.0].into_iter().enumerate() {
@@ -186,7 +186,7 @@ fn rays_go_where_they_point_with_their_flux_and_their_wavelength() {
     let numbers = (vec![11, 4, 4], 25.0);
     let fluxes = vec![2.0, 0.0, 1.0];
     let set = RaySet::of_wavelengths(&positions, &ways, fluxes, numbers, luminosity).unwrap();
-    let source = LightSource::Rays(set);
+    let source = LightSource::Rays(set.into());
     let got = measure_by(&scene, source, &spots, round(&spots), (1 << 14, FORWARD));
     for component in 0..3 {
         let per_watt = |lane: usize| {

@@ -59,9 +59,13 @@ impl Beam {
     }
 
     /// Draw a direction of the disc, and a place across it.
-    pub(super) fn depart(&self, scene: &Scene, sampler: &mut PixelSampler) -> Departure {
+    pub(super) fn depart(
+        &self,
+        scene: &Scene,
+        [u, v, a, b]: [f64; 4],
+        sampler: &PixelSampler,
+    ) -> Departure {
         let wavelengths = sampler.wavelengths(scene.phases());
-        let [u, v, a, b] = sampler.first_4d();
         let local = uniform_cone([a, b], self.one_minus_cos);
         let (x, y) = orthonormal_pair(self.direction);
         let direction = (x * local.x + y * local.y + self.direction * local.z).normalize();

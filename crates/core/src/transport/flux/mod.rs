@@ -12,13 +12,15 @@ mod beam;
 mod rays;
 mod shining;
 
+use std::sync::Arc;
+
 use thiserror::Error;
 
 use super::ledger::Ledger;
 use super::path::{PathSettings, PathWalk};
 use super::tally::Tally;
 use crate::math::Ray;
-use crate::sampling::PixelSampler;
+use crate::sampling::{Choice, PixelSampler};
 use crate::scene::{BodyId, Interior, Scene};
 use crate::spectrum::{SampledSpectrum, SampledWavelengths};
 
@@ -71,9 +73,11 @@ pub enum LightSource {
     /// The bodies that shine.
     Shining(Shining),
     /// Given rays.
-    Rays(RaySet),
+    Rays(Arc<RaySet>),
     /// Parallel light from outside.
     Beam(Beam),
+    /// Several of these, each chosen by its luminous flux.
+    Several(Vec<LightSource>, Choice),
 }
 
 impl From<Shining> for LightSource {
@@ -83,11 +87,25 @@ impl From<Shining> for LightSource {
 }
 
 impl LightSource {
+    /// All of `parts` together.
+    ///
+    /// # Errors
+    /// None has visible flux.
+    pub fn several(scene: &Scene, parts: Vec<Self>) -> Result<Self, FluxError> {
+        let lumens = |part: &Self| part.flux(scene).iter().map(|xyz| xyz[1]).sum();
+        let by_flux = Choice::new(parts.iter().map(lumens)).ok_or(FluxError::NoFlux)?;
+        Ok(Self::Several(parts, by_flux))
+    }
+
     /// How many light groups its light is counted to.
     pub fn groups(&self, scene: &Scene) -> usize {
         match self {
             Self::Shining(_) => scene.groups,
-            Self::Rays(_) | Self::Beam(_) => 1,
+            Self::Rays(rays) => rays.group() + 1,
+            Self::Beam(_) => 1,
+            Self::Several(parts, _) => {
+                parts.iter().map(|part| part.groups(scene)).max().unwrap_or(0)
+            }
         }
     }
 
@@ -95,16 +113,42 @@ impl LightSource {
     pub fn flux(&self, scene: &Scene) -> Vec<[f64; 3]> {
         match self {
             Self::Shining(shining) => shining.flux(scene),
-            Self::Rays(rays) => vec![rays.flux(scene)],
+            Self::Rays(rays) => {
+                let mut flux = vec![[0.0; 3]; rays.group() + 1];
+                flux[rays.group()] = rays.flux(scene);
+                flux
+            }
             Self::Beam(beam) => vec![beam.flux(scene)],
+            Self::Several(parts, _) => {
+                let mut sums = vec![[0.0; 3]; self.groups(scene)];
+                for part in parts {
+                    for (sum, own) in sums.iter_mut().zip(part.flux(scene)) {
+                        *sum = [0, 1, 2].map(|i| sum[i] + own[i]);
+                    }
+                }
+                sums
+            }
         }
     }
 
-    fn depart(&self, scene: &Scene, sampler: &mut PixelSampler) -> Option<Departure> {
+    /// Draw a place and a direction, for `u` uniform in the unit cube and the sampler's next numbers.
+    fn depart(
+        &self,
+        scene: &Scene,
+        [choice, v, w, x]: [f64; 4],
+        sampler: &mut PixelSampler,
+    ) -> Option<Departure> {
+        let u = [choice, v, w, x];
         match self {
-            Self::Shining(shining) => shining.depart(scene, sampler),
-            Self::Rays(rays) => rays.depart(scene, sampler),
-            Self::Beam(beam) => Some(beam.depart(scene, sampler)),
+            Self::Shining(shining) => shining.depart(scene, u, sampler),
+            Self::Rays(rays) => rays.depart(scene, u, sampler),
+            Self::Beam(beam) => Some(beam.depart(scene, u, sampler)),
+            Self::Several(parts, by_flux) => {
+                let (part, rest) = by_flux.pick(choice);
+                let departure = parts[part].depart(scene, [rest, v, w, x], sampler)?;
+                let flux = departure.flux * (1.0 / by_flux.probability(part));
+                Some(Departure { flux, ..departure })
+            }
         }
     }
 }
@@ -172,7 +216,7 @@ impl<'a> LightWalk<'a> {
         receive: &mut dyn FnMut(&Parted<'_>),
     ) {
         let scene = self.scene;
-        let Some(departure) = self.source.depart(scene, &mut sampler) else {
+        let Some(departure) = self.source.depart(scene, sampler.first_4d(), &mut sampler) else {
             return;
         };
         let Departure { ray, interior, wavelengths, flux, group } = departure;

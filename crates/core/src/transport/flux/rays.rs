@@ -23,6 +23,7 @@ pub struct RaySet {
     powers: Vec<f64>,
     colour: Colour,
     by_flux: Choice,
+    group: usize,
 }
 
 impl RaySet {
@@ -45,7 +46,7 @@ impl RaySet {
         }
         let by_flux = Choice::new(fluxes.iter().copied()).ok_or(FluxError::NoFlux)?;
         let colour = Colour::Shared(Box::new(spectrum.scaled(1.0 / own)));
-        Ok(Self { rays, powers: fluxes, colour, by_flux })
+        Ok(Self { rays, powers: fluxes, colour, by_flux, group: 0 })
     }
 
     /// Rays with radiant fluxes in W of one wavelength each: its number among the scene's, rising,
@@ -77,7 +78,24 @@ impl RaySet {
             flux * luminosity.at(wavelengths).0[lane]
         });
         let by_flux = Choice::new(seen).ok_or(FluxError::NoFlux)?;
-        Ok(Self { rays, powers: fluxes, colour: Colour::Single { wavelengths, step_nm }, by_flux })
+        Ok(Self {
+            rays,
+            powers: fluxes,
+            colour: Colour::Single { wavelengths, step_nm },
+            by_flux,
+            group: 0,
+        })
+    }
+
+    /// The same rays, counted to a light group.
+    #[must_use]
+    pub fn in_group(self, group: usize) -> Self {
+        Self { group, ..self }
+    }
+
+    /// The light group that they are counted to: 0 unless told otherwise.
+    pub fn group(&self) -> usize {
+        self.group
     }
 
     /// X, Y, Z of the flux of all rays.
@@ -105,8 +123,12 @@ impl RaySet {
     }
 
     /// Draw a ray by its luminous flux.
-    pub(super) fn depart(&self, scene: &Scene, sampler: &mut PixelSampler) -> Option<Departure> {
-        let [choice, ..] = sampler.first_4d();
+    pub(super) fn depart(
+        &self,
+        scene: &Scene,
+        [choice, ..]: [f64; 4],
+        sampler: &PixelSampler,
+    ) -> Option<Departure> {
         let (number, _) = self.by_flux.pick(choice);
         let weight = self.powers[number] / self.by_flux.probability(number);
         let (wavelengths, flux) = match &self.colour {
@@ -124,7 +146,13 @@ impl RaySet {
         let (origin, direction) = self.rays[number];
         let interior = scene.bodies_round(origin);
         let ray = Ray::endless(origin, direction);
-        (flux.max() > 0.0).then_some(Departure { ray, interior, wavelengths, flux, group: 0 })
+        (flux.max() > 0.0).then_some(Departure {
+            ray,
+            interior,
+            wavelengths,
+            flux,
+            group: self.group,
+        })
     }
 }
 

@@ -63,9 +63,13 @@ impl Shining {
     }
 
     /// Draw an emitter by its flux, a place on it by area and a direction by its law.
-    pub(super) fn depart(&self, scene: &Scene, sampler: &mut PixelSampler) -> Option<Departure> {
+    pub(super) fn depart(
+        &self,
+        scene: &Scene,
+        [choice, v, w, _]: [f64; 4],
+        sampler: &mut PixelSampler,
+    ) -> Option<Departure> {
         let wavelengths = sampler.wavelengths(scene.phases());
-        let [choice, v, w, _] = sampler.first_4d();
         let [a, b, ..] = sampler.next_4d();
         let (number, rest) = scene.emitters.choose(choice)?;
         let emitter = scene.emitters.get(number);

@@ -1,0 +1,271 @@
+# SPDX-License-Identifier: Apache-2.0 OR MIT
+"""What `measure` and `report` share: options, the run itself, and what is printed of it."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from lamplit.errors import LamplitError
+
+if TYPE_CHECKING:
+    from lamplit.cli.functions import Asked
+    from lamplit.cli.stopping import Stop
+    from lamplit.engine.measurement import Measurement
+    from lamplit.report.photometry.progress import MeasuringProgress
+    from lamplit.report.photometry.results import Results
+    from lamplit.scene import Scene
+
+#: With --until-decided alone, no more paths than these: what lies on a limit is never decided.
+_MOST_UNDECIDED = 1 << 30
+#: In a log, a table of findings has this width at least: narrower ones break every line of it.
+_TABLE_WIDTH = 120
+#: What --distance says instead of a number.
+_FAR = "far"
+
+RuleOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--rule",
+        metavar="[FUNCTION=]RULE",
+        help="What the lamp, or one function of it, has to meet, such as un-r148/S1 or "
+        "un-r148/S2?period=night, instead of the scene's; may be repeated.",
+    ),
+]
+PathsOption = Annotated[
+    int | None, typer.Option("--paths", min=1, help="Paths of light to walk, at most.")
+]
+ErrorOption = Annotated[
+    float | None,
+    typer.Option(
+        "--error",
+        metavar="SHARE",
+        help="Walk until the relative standard error at the bright test points is this: 0.01 is "
+        "1 %.",
+    ),
+]
+TimeOption = Annotated[
+    float | None, typer.Option("--time", metavar="SECONDS", help="Walk for so long, at most.")
+]
+UntilDecidedOption = Annotated[
+    bool,
+    typer.Option(
+        "--until-decided",
+        help="Walk until no limit lies within 2 sigma of what was measured; --time or --paths "
+        "sets an end, else it is a thousand million paths.",
+    ),
+]
+DistanceOption = Annotated[
+    str | None,
+    typer.Option(
+        "--distance",
+        metavar="M",
+        help="Distance of the receiver in m, or far for the far field, instead of the scene's.",
+    ),
+]
+ReceiverOption = Annotated[
+    float | None,
+    typer.Option(
+        "--receiver",
+        metavar="DEG",
+        help="Full angle that the receiver subtends, 1/6 to 1, instead of the scene's.",
+    ),
+]
+ProductionOption = Annotated[
+    bool,
+    typer.Option(
+        "--production", help="Judge as a lamp from the line: limits of conformity of production."
+    ),
+]
+
+
+@dataclass(frozen=True)
+class Budget:
+    """How long to walk."""
+
+    paths: int | None = None
+    error: float | None = None
+    time_s: float | None = None
+    until_decided: bool = False
+
+    @property
+    def most_paths(self) -> int | None:
+        """The most paths to walk; None for no end but the time or the error."""
+        from lamplit.engine.measure import USUAL_PATHS
+
+        if self.paths is not None or self.error is not None or self.time_s is not None:
+            return self.paths
+        return _MOST_UNDECIDED if self.until_decided else USUAL_PATHS
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What is to be measured."""
+
+    place: Path
+    rules: Sequence[str] = ()
+    distance: str | None = None
+    receiver_deg: float | None = None
+    production: bool = False
+    seed: int | None = None
+    assignments: Sequence[str] = ()
+
+    def load(self) -> Scene:
+        """Return the scene with what the options change in it.
+
+        Raises:
+            LamplitError: The scene or an option cannot be used.
+        """
+        from lamplit.cli.overrides import overrides, scene_file
+        from lamplit.scene import load_scene
+
+        changed = overrides(assignments=self.assignments, seed=self.seed)
+        return load_scene(scene_file(self.place), overrides=changed)
+
+    @property
+    def distance_m(self) -> float | None:
+        """The receiver's distance, infinite for the far field; None: as the scene says.
+
+        Raises:
+            LamplitError: It is no distance.
+        """
+        if self.distance is None or self.distance == _FAR:
+            return None if self.distance is None else math.inf
+        try:
+            value = float(self.distance)
+        except ValueError:
+            value = math.nan
+        if not (math.isfinite(value) and value > 0.0):
+            raise LamplitError(
+                f"{self.distance!r} is no distance; write m such as 10, or far", where="--distance"
+            )
+        return value
+
+
+def measured(
+    wanted: Wanted, budget: Budget, *, threads: int | None = None
+) -> tuple[Results, Measurement, Stop]:
+    """Measure what is ``wanted``; return what is shown, what was measured, and what stopped it.
+
+    Raises:
+        LamplitError: The scene, a rule or an option cannot be used.
+        typer.Exit: A signal stopped it before anything was done.
+    """
+    from lamplit import engine
+    from lamplit.cli.functions import asked_functions, directions
+    from lamplit.cli.stopping import stop_signals
+    from lamplit.report.photometry.measured import results_of
+    from lamplit.report.photometry.progress import MeasuringProgress
+
+    scene = wanted.load()
+    functions = asked_functions(scene, rules=wanted.rules)
+    _check(budget, functions)
+    spots, grid = directions(functions)
+    progress = MeasuringProgress("Measuring", time_s=budget.time_s)
+    rounds = _Rounds(functions, budget, progress, production=wanted.production)
+    with stop_signals() as stop, progress:
+        try:
+            measurement = engine.measure(
+                scene,
+                spots=spots,
+                grid=grid,
+                distance_m=wanted.distance_m,
+                receiver_deg=wanted.receiver_deg,
+                paths=budget.most_paths,
+                error=budget.error,
+                time_s=budget.time_s,
+                threads=threads,
+                until=rounds.are_enough,
+                progress=progress,
+            )
+        except engine.MeasureInterrupted as stopped:
+            measurement = stopped.measurement
+    if measurement.paths == 0:
+        print("stopped before the first path was done; nothing is written", file=sys.stderr)
+        raise typer.Exit(stop.exit_code)
+    if not (rounds.have_an_aim or measurement.interrupted):
+        measurement = replace(measurement, complete=True)
+    results = results_of(measurement, functions, production=wanted.production)
+    return results, measurement, stop
+
+
+class _Rounds:
+    """What is asked between the rounds of a measurement: are the paths so far enough?"""
+
+    def __init__(
+        self,
+        functions: Sequence[Asked],
+        budget: Budget,
+        progress: MeasuringProgress,
+        *,
+        production: bool,
+    ) -> None:
+        self._functions, self._budget, self._production = functions, budget, production
+        self._progress = progress
+
+    @property
+    def have_an_aim(self) -> bool:
+        """Whether something else than paths or time says when it is enough."""
+        return self._budget.error is not None or self._budget.until_decided
+
+    def are_enough(self, so_far: Measurement) -> bool:
+        """Tell how certain it is so far, and return whether all is decided that can be."""
+        from lamplit.report.photometry.measured import judged_functions
+
+        self._progress.note(so_far.relative_error)
+        if not self._budget.until_decided:
+            return self._budget.error is not None
+        judged = judged_functions(so_far, self._functions, production=self._production)
+        verdicts = [one.verdict for one in judged if one.verdict is not None]
+        return all(verdict.paths_factor is None for verdict in verdicts)
+
+
+def _check(budget: Budget, functions: Sequence[Asked]) -> None:
+    """Refuse to go on until what has no rule is decided.
+
+    Raises:
+        LamplitError: No function has a rule.
+    """
+    if budget.until_decided and all(one.rule is None for one in functions):
+        raise LamplitError(
+            "no function has a rule that could be decided; name one with --rule",
+            where="--until-decided",
+        )
+
+
+def print_verdicts(results: Results) -> None:
+    """Print the table of each function, and below all of them the verdicts."""
+    from rich.console import Console
+    from rich.markup import escape
+    from rich.text import Text
+
+    from lamplit.report.photometry.style import MARKS
+    from lamplit.report.photometry.table import STYLES, findings_table, in_words, spots_table
+
+    console = Console(highlight=False, soft_wrap=True)
+    if not console.is_terminal:
+        console.width = max(console.width, _TABLE_WIDTH)
+    for one in results.functions:
+        console.print(f"\n[bold]{escape(one.name)}[/bold]", end="")
+        if one.verdict is None:
+            console.print(": no rule, nothing is judged\n")
+            console.print(spots_table(one.observed))
+            continue
+        chosen = "" if not one.verdict.production else ", conformity of production"
+        console.print(f": {escape(one.verdict.title)}, {escape(one.verdict.rule)}{chosen}\n")
+        console.print(findings_table(one))
+    console.print()
+    for one in results.functions:
+        if one.verdict is not None:
+            mark = MARKS[one.verdict.outcome]
+            word = Text(f"{mark.sign} {mark.word:10}", style=STYLES[one.verdict.outcome])
+            console.print(word, Text(f"{one.name}: {in_words(one.verdict)}"))
+    notices = [note for one in results.functions if one.verdict for note in one.verdict.notices]
+    for notice in dict.fromkeys([*results.notices, *notices]):
+        console.print(f"[cyan]notice: {escape(notice)}[/cyan]")

@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: Apache-2.0 OR MIT
+"""From what the engine measured to what is shown."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from lamplit.report.photometry.judged import judged
+from lamplit.report.photometry.results import EnergyFlow, FunctionResults, Results, Spectrum
+
+if TYPE_CHECKING:
+    from lamplit.engine.measurement import Measurement
+    from lamplit.photometry.observed import Observed
+    from lamplit.rules import Rule
+
+
+class Asked(Protocol):
+    """A function of a lamp: its light, and what it has to meet."""
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+        ...
+
+    @property
+    def light(self) -> Mapping[str, float]:
+        """The weight of each light group; empty for all."""
+        ...
+
+    @property
+    def rule(self) -> Rule | None:
+        """What it has to meet."""
+        ...
+
+    @property
+    def with_position(self) -> str | None:
+        """The function that ratios are taken to."""
+        ...
+
+
+def results_of(
+    measurement: Measurement, functions: Sequence[Asked], *, production: bool = False
+) -> Results:
+    """Return a measurement with the verdicts on its functions.
+
+    Raises:
+        RuleError: A rule cannot be judged by it.
+    """
+    scene = measurement.scene
+    return Results(
+        scene=scene.name,
+        scene_hash=scene.scene_hash,
+        version=measurement.version,
+        seed=measurement.seed,
+        paths=measurement.paths,
+        functions=judged_functions(measurement, functions, production=production),
+        energy=energy_of(measurement),
+        spectra=_spectra(measurement),
+        geometry=_geometry(measurement),
+        elapsed_s=measurement.elapsed_s,
+        complete=measurement.complete,
+    )
+
+
+def judged_functions(
+    measurement: Measurement, functions: Sequence[Asked], *, production: bool = False
+) -> tuple[FunctionResults, ...]:
+    """Return what was seen of each function, and what its rule says of it."""
+    by_name = {one.name: one for one in functions}
+    seen = {one.name: _observed(measurement, one.name, one.light) for one in functions}
+    return tuple(
+        judged(
+            seen[one.name],
+            one.rule,
+            others=_others(measurement, one, by_name, seen),
+            production=production,
+            spectrum=_on_axis(measurement, one),
+        )
+        for one in functions
+    )
+
+
+def energy_of(measurement: Measurement) -> EnergyFlow | None:
+    """Return where the lumens of all light groups, lit once each, went; None if nothing shone."""
+    ledger = measurement.ledger
+    if not ledger.emitted > 0.0:
+        return None
+    return EnergyFlow(
+        emitted_lm={name: own.emitted for name, own in measurement.ledgers.items() if own.emitted},
+        out_lm=ledger.out,
+        absorbed_lm={name: lm for name, lm in ledger.absorbed.items() if lm != 0.0},
+        cut_lm=ledger.cut_by_depth,
+        lost_lm=ledger.lost,
+        chance_lm=ledger.chance,
+    )
+
+
+def _observed(measurement: Measurement, name: str, light: Mapping[str, float]) -> Observed:
+    return measurement.observed(light or None, name=name)
+
+
+def _others(
+    measurement: Measurement,
+    one: Asked,
+    by_name: Mapping[str, Asked],
+    seen: Mapping[str, Observed],
+) -> dict[str, Observed]:
+    """Return the position lamp by the name that the rule's ratios give it, and both lit together.
+
+    Both lit: a light group that both use shines as brightly as the brighter of the two asks.
+    """
+    if one.rule is None or one.with_position is None or one.with_position not in by_name:
+        return {}
+    names = {ratio.to for ratio in one.rule.entry.ratio if one.rule.holds(ratio.when)}
+    found = dict.fromkeys(names, seen[one.with_position])
+    other = by_name[one.with_position]
+    shared = set(one.light) & set(other.light) if one.light and other.light else {""}
+    if found and shared:
+        groups = measurement.groups
+        light = {group: max(_weight(one, group), _weight(other, group)) for group in groups}
+        found["both"] = _observed(measurement, "both", light)
+    return found
+
+
+def _weight(one: Asked, group: str) -> float:
+    return one.light.get(group, 0.0) if one.light else 1.0
+
+
+def _on_axis(measurement: Measurement, one: Asked) -> Spectrum | None:
+    gonio = measurement.goniometer
+    at = np.flatnonzero((gonio.spot_h_deg == 0.0) & (gonio.spot_v_deg == 0.0))
+    if at.size == 0 or measurement.band_centres_nm.size == 0:
+        return None
+    weights = measurement.weights(one.light or None)
+    values = weights @ measurement.spot_spectra[:, int(at[0])]
+    return Spectrum(f"{one.name} at HV", measurement.band_centres_nm, values, "W/(sr nm)")
+
+
+def _spectra(measurement: Measurement) -> tuple[Spectrum, ...]:
+    """Return the spectra of the sources by light group: what is emitted, and what leaves."""
+    nm = np.arange(380.0, 780.5)
+    emitted = {
+        own.emission.group or own.name: own.emission.source
+        for own in measurement.scene.objects
+        if own.emission is not None and own.emission.source is not None
+    }
+    shapes = [
+        Spectrum(f"{group}, the source", nm, measurement.scene.resolve_source(source)(nm), "")
+        for group, source in emitted.items()
+        if measurement.light is None
+    ]
+    leaving = (
+        Spectrum(f"{name}, leaving the lamp", measurement.band_centres_nm, values, "W/nm")
+        for name, values in zip(measurement.groups, measurement.out_spectra, strict=True)
+        if values.size and values.any()
+    )
+    return (*shapes, *leaving)
+
+
+def _geometry(measurement: Measurement) -> dict[str, str]:
+    gonio = measurement.goniometer
+    distance = gonio.distance_m
+    centre = ", ".join(f"{at:.1f}".replace("-", "−") for at in gonio.centre_mm)
+    return {
+        "distance": "far field" if distance is None else f"{distance:g} m",
+        "receiver": f"{gonio.receiver_deg:.3g}° full angle",
+        "reference centre": f"({centre}) mm",
+    }

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: Apache-2.0 OR MIT
+"""`lamplit measure` with its engine: a lamp of a closed form, and Ctrl-C on a real run."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from math import pi
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+#: A disc that sends out 100 lm by Lambert's law, in a dark room: I = Φ/π · cos θ.
+LAMBERT = """
+lamplit = 1
+name = "Lambert disc"
+[camera]
+kind = "pinhole"
+position_mm = [0.0, 0.0, 300.0]
+target_mm = [0.0, 0.0, 0.0]
+up = [0.0, 1.0, 0.0]
+field_of_view_deg = 30.0
+[[objects]]
+name = "disc"
+kind = "disc"
+centre_mm = [0.0, 0.0, 0.0]
+normal = [0.0, 0.0, 1.0]
+radius_mm = 10.0
+material = "black-abs"
+emission = { source = "A", flux_lm = 100.0, group = "disc" }
+[measure]
+axis = [0.0, 0.0, 1.0]
+receiver_deg = 1.0
+[[measure.functions]]
+name = "reversing"
+rule = "un-r148/AR"
+"""
+
+
+@pytest.fixture
+def lambert(tmp_path: Path) -> Path:
+    path = tmp_path / "scene.toml"
+    path.write_text(LAMBERT)
+    return path
+
+
+def test_a_lambertian_disc_has_its_candela_its_flux_and_its_verdict(
+    lamplit: Callable[..., int], lambert: Path, tmp_path: Path
+) -> None:
+    """100 lm give 31.83 cd on the axis: below the 80 cd of a reversing lamp, and 22.5 at 45°."""
+    out = tmp_path / "out"
+    assert lamplit("measure", lambert, "-o", out, "--paths", "400000", "--threads", "1") == 0
+    numbers = json.loads((out / "measurement.json").read_text())
+    (function,) = numbers["functions"]
+    spots = function["spots"]
+    expected = [
+        100.0 / pi * np.cos(np.radians(spot["h_deg"])) * np.cos(np.radians(spot["v_deg"]))
+        for spot in spots
+    ]
+    off = np.array([spot["intensity_cd"] for spot in spots]) - expected
+    sigmas = off / [spot["standard_error_cd"] for spot in spots]
+    assert np.abs(sigmas).max() < 4.5
+    assert numbers["outcome"] == "fail"
+    on_axis = next(
+        one for one in function["verdict"]["findings"]
+        if one["h_deg"] == one["v_deg"] == 0.0 and one["sense"] == "min"
+    )  # fmt: skip
+    assert (on_axis["required"], on_axis["outcome"]) == (80.0, "fail")
+    energy = numbers["energy"]
+    assert energy["out_lm"] == pytest.approx(energy["emitted_lm"]["disc"], rel=1e-9)
+    assert abs(energy["gap_lm"]) < 1e-7
+    assert lamplit("report", out, "-o", tmp_path / "page.html") == 0
+    assert "✗ fail" in (tmp_path / "page.html").read_text()
+
+
+def test_the_same_seed_gives_the_same_numbers_on_any_number_of_threads(
+    lamplit: Callable[..., int], lambert: Path, tmp_path: Path
+) -> None:
+    for threads in ("1", "2"):
+        out = tmp_path / threads
+        assert lamplit("measure", lambert, "-o", out, "--paths", "20000", "--threads", threads) == 0
+    first, second = ((tmp_path / threads / "candela.csv").read_bytes() for threads in "12")
+    assert first == second
+
+
+@pytest.mark.parametrize(
+    ("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)], ids=["INT", "TERM"]
+)
+def test_a_signal_ends_a_running_measurement_and_keeps_its_paths(
+    lambert: Path, number: signal.Signals, code: int
+) -> None:
+    out = lambert.parent / "out"
+    options = ["--paths", "4000000000", "--threads", "1"]
+    running = subprocess.Popen(
+        [sys.executable, "-m", "lamplit.cli", "measure", str(lambert), "-o", str(out), *options],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        deadline = time.monotonic() + 30.0
+        while not out.is_dir() and time.monotonic() < deadline:
+            time.sleep(0.05)
+        time.sleep(3.0)
+        running.send_signal(number)
+        _, error = running.communicate(timeout=60)
+    finally:
+        running.kill()
+    assert running.returncode == code, error
+    assert "Traceback" not in error
+    numbers = json.loads((out / "measurement.json").read_text())
+    assert numbers["complete"] is False
+    assert 0 < numbers["paths"] < 4_000_000_000
+    assert not list(out.glob(".*"))
