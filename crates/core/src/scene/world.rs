@@ -195,7 +195,7 @@ impl Scene {
                 let is_transparent = self.material_of(face.body).dielectric().is_some();
                 if !face.is_entered && is_transparent {
                     interior = interior.cross(face.body, true).unwrap_or(interior);
-                } else if !face.is_entered && self.is_closed(face.body) {
+                } else if !face.is_entered && self.encloses(face.body, point, direction) {
                     return Err(face.body);
                 }
             }
@@ -203,9 +203,16 @@ impl Scene {
         Ok(interior)
     }
 
-    /// Whether a body encloses a volume; an opaque mesh may be a sheet, and counts as one.
-    fn is_closed(&self, body: BodyId) -> bool {
-        self.primitives.iter().any(|(primitive, id)| *id == body && primitive.is_closed())
+    /// Whether a body encloses a volume, and `point` in it, by its own surface along `direction`: that
+    /// of another opaque body in the same place may have hidden where the way entered it. An opaque
+    /// mesh may be a sheet, and counts as one.
+    fn encloses(&self, body: BodyId, point: DVec3, direction: DVec3) -> bool {
+        let ray = Ray::endless(point, direction);
+        self.primitives.iter().any(|(primitive, id)| {
+            *id == body
+                && primitive.is_closed()
+                && primitive.closest_hit(&ray).is_some_and(|hit| hit.normal.dot(direction) > 0.0)
+        })
     }
 
     /// The box round all bodies but endless planes; `None` without any.
