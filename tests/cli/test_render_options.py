@@ -66,7 +66,6 @@ def test_a_comparison_is_by_hall_unless_another_method_is_asked_for(
         (["--method", "pth"], "'pth'"),
         (["--error", "2"], "a target error is a share above 0 and at most 1"),
         (["--time", "-3"], "a time budget is a number of seconds above 0"),
-        (["--adaptive"], "and 4 are allowed"),
         (["--method", "hall", "--samples", "5"], "a grid needs a square number"),
     ],
 )

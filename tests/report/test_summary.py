@@ -111,16 +111,14 @@ def test_the_summary_says_what_error_was_reached_and_how_fast(make_image: MakeIm
         samples_per_pixel=np.repeat(np.array([[8], [24]], np.uint32), [5, 5], axis=0)
         * np.ones((1, 20), np.uint32),
         samples=16,
-        pilot_samples=4,
         error_asked=0.02,
         statistics={"eye_rays": 9000, "shadow_rays": 1000, "lost_rays": {}, "trace_s": 0.5},
     )
     numbers = summary(image, develop(image))
     assert numbers["relative_error_rms"] == pytest.approx(0.02)
     assert numbers["error_asked"] == 0.02
-    assert numbers["pilot_samples"] == 4
     assert numbers["samples_per_pixel"] == {"fewest": 8, "mean": 16.0, "most": 24}
-    assert numbers["speed"] == {"rays_per_s": 20_000.0, "paths_per_s": 200 * 20 / 0.5}
+    assert numbers["speed"] == {"rays_per_s": 20_000.0, "paths_per_s": 200 * 16 / 0.5}
     assert numbers["ledger"] is None
     assert summary(make_image(), develop(make_image()))["speed"]["rays_per_s"] is None
 

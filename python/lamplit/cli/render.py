@@ -45,7 +45,7 @@ def render(
         typer.Option(
             "--adaptive/--uniform",
             help="Allot samples to pixels by their noise, or give all the same. "
-            "With --error adaptive, else uniform.",
+            "With --error or --time adaptive, else uniform.",
         ),
     ] = None,
     layers: Annotated[

@@ -183,3 +183,83 @@ fn round(values: &[f64], width: usize) -> Vec<f64> {
     };
     (0..values.len()).map(mean).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIZE: u32 = 12;
+
+    /// A white picture of 16 samples a pixel, with the standard deviation `spread` of a sample by
+    /// column and row.
+    fn film(spread: impl Fn(u32, u32) -> f64) -> Film {
+        let mut film = Film::new(SIZE, SIZE, 0, 0);
+        film.segments.fill(16);
+        for (at, pixel) in film.pixels.iter_mut().enumerate() {
+            let deviation = spread(at as u32 % SIZE, at as u32 / SIZE) * (15.0_f64 / 16.0).sqrt();
+            for sample in 0..16 {
+                let sign = if sample % 2 == 0 { 1.0 } else { -1.0 };
+                pixel.add([1.0, 1.0 + sign * deviation, 1.0]);
+            }
+        }
+        film
+    }
+
+    fn at(column: u32, row: u32) -> usize {
+        (row * SIZE + column) as usize
+    }
+
+    #[test]
+    fn a_pixel_never_decides_its_own_samples() {
+        let quiet = film(|_, _| 0.1);
+        let mut loud = film(|_, _| 0.1);
+        let own = at(5, 5);
+        for _ in 0..8 {
+            loud.pixels[own].add([9.0; 3]);
+            loud.pixels[own].add([0.0; 3]);
+        }
+        loud.pixels[own].samples = 16;
+        loud.segments[own] = 1000;
+        for target in [None, Some(0.01)] {
+            let [quiet, loud] = [&quiet, &loud].map(|film| Pilot::of(film).allocate(64.0, target));
+            assert_eq!(quiet.of(own), loud.of(own), "{target:?}");
+            assert_ne!(quiet.of(at(5, 6)), loud.of(at(5, 6)), "{target:?}");
+        }
+    }
+
+    #[test]
+    fn counts_follow_the_noise_round_a_pixel_and_spend_what_there_is() {
+        let pilot = Pilot::of(&film(|column, _| if column < 6 { 0.3 } else { 0.1 }));
+        let allocation = pilot.allocate(200.0, None);
+        let ratio = f64::from(allocation.of(at(2, 6))) / f64::from(allocation.of(at(9, 6)));
+        assert!((ratio - 3.0).abs() < 0.05, "{ratio}");
+        let mean = allocation.total() as f64 / f64::from(SIZE * SIZE);
+        assert!((mean - 200.0).abs() < 1.0, "{mean}");
+    }
+
+    #[test]
+    fn a_target_takes_no_more_samples_than_it_needs() {
+        let allocation = Pilot::of(&film(|_, _| 0.5)).allocate(1e5, Some(0.01));
+        // Relative to a tone of 1.01: (0.5/1.01/0.01)² samples.
+        let expected = (0.5_f64 / 1.01 / 0.01).powi(2).ceil() as u32;
+        assert!(allocation.counts.iter().all(|count| count.abs_diff(expected) <= 1));
+    }
+
+    #[test]
+    fn where_walks_are_four_times_as_long_pixels_take_half_as_many() {
+        let mut film = film(|_, _| 0.2);
+        for (pixel, segments) in film.segments.iter_mut().enumerate() {
+            *segments = if pixel % (SIZE as usize) < 6 { 64 } else { 16 };
+        }
+        let allocation = Pilot::of(&film).allocate(1000.0, None);
+        let ratio = f64::from(allocation.of(at(9, 6))) / f64::from(allocation.of(at(2, 6)));
+        assert!((ratio - 2.0).abs() < 0.01, "{ratio}");
+    }
+
+    #[test]
+    fn a_black_picture_takes_the_least() {
+        let mut film = Film::new(2, 2, 0, 0);
+        film.pixels.iter_mut().for_each(|pixel| (0..16).for_each(|_| pixel.add([0.0; 3])));
+        assert_eq!(Pilot::of(&film).allocate(1000.0, Some(0.01)).total(), 4 * 16);
+    }
+}
