@@ -45,7 +45,7 @@ _MOST_IN_BATCH = 2**32 - 1
 _SPOT_BANDS = 5
 
 #: How light walks are spent: one way on at smooth surfaces, and by chance on with less than this
-#: share. Measured in benchmarks/light_walks.py.
+#: share. docs/transport.md has what was measured.
 _SPLIT_DEPTH, _ROULETTE_BELOW = 0, 0.25
 
 
