@@ -44,9 +44,9 @@ _MOST_IN_BATCH = 2**32 - 1
 #: Finest bands of a spot, per lane: 5 nm over 380–780 nm. Cells of a grid have one band a lane.
 _SPOT_BANDS = 5
 
-#: How light walks are spent: one way on at smooth surfaces, and by chance on with less than this
+#: How light walks are spent: both ways on at the first smooth surface, and by chance below this
 #: share. docs/transport.md has what was measured.
-_SPLIT_DEPTH, _ROULETTE_BELOW = 0, 0.25
+_SPLIT_DEPTH, _ROULETTE_BELOW = 1, 0.25
 
 
 class MeasureInterrupted(KeyboardInterrupt):

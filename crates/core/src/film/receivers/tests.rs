@@ -55,7 +55,9 @@ fn every_direction_is_in_the_spots_that_are_no_farther_than_their_half_angle() {
                 };
                 let expected: Vec<usize> = (0..all.len()).filter(|at| holds(&all[*at])).collect();
                 assert_eq!(found, expected, "{h} {v}");
-                found.iter().for_each(|at| met[*at] += 1);
+                for at in found {
+                    met[at] += 1;
+                }
             }
         }
     }
