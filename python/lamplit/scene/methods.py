@@ -33,8 +33,8 @@ class PathSettings(Table):
         default=64, ge=1, le=4096, description="surfaces and scatterings in one walk"
     )
     split_depth: int = Field(
-        default=3, ge=0, le=64, description="smooth surfaces where both ways on are followed"
+        default=2, ge=0, le=64, description="smooth surfaces where both ways on are followed"
     )
     roulette_below: Share = Field(
-        default=1e-3, description="what carries a smaller share goes on by chance only"
+        default=3e-3, description="what carries a smaller share goes on by chance only"
     )
