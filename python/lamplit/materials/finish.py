@@ -12,7 +12,8 @@ from pydantic_core import PydanticCustomError
 
 from lamplit.materials.index_spec import IndexSpec
 from lamplit.materials.transmittance import TransmittanceSpec
-from lamplit.spectra_spec import CoefficientSpec, Number, Positive
+from lamplit.spec_forms import Number, Positive
+from lamplit.spectra_spec import CoefficientSpec
 from lamplit.spectrum import Array
 
 #: Below it, a rough surface cannot be told from a smooth one, and its peak is too high for doubles.

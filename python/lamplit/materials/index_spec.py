@@ -40,8 +40,8 @@ from lamplit.materials.refractiveindex_info import (
     formula_distribution,
     read_page,
 )
-from lamplit.spec_forms import file_below_root, form_tag, spec_fault
-from lamplit.spectra_spec import Column, Number, Positive
+from lamplit.spec_forms import Number, Positive, file_below_root, form_tag, spec_fault
+from lamplit.spectra_spec import Column
 from lamplit.spectrum import Interpolation, SpectralDistribution
 from lamplit.spectrum_files import Table, check_table
 

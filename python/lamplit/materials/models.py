@@ -25,7 +25,8 @@ from pydantic_core import PydanticCustomError
 from lamplit.materials.finish import Lacquer, Roughness, Scattering, Texture, check_texture
 from lamplit.materials.index_spec import ComplexIndexSpec, IndexSpec
 from lamplit.materials.transmittance import TransmittanceSpec
-from lamplit.spectra_spec import FractionSpec, Number, Positive
+from lamplit.spec_forms import Number, Positive
+from lamplit.spectra_spec import FractionSpec
 from lamplit.spectrum import Array, SpectralDistribution
 
 #: Where a picture may lie, in nm.

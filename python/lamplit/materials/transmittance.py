@@ -34,15 +34,8 @@ from pydantic import (
 )
 
 from lamplit.materials.index_spec import PageForm, TableForm
-from lamplit.spec_forms import form_tag, spec_fault
-from lamplit.spectra_spec import (
-    Column,
-    CsvSpectrum,
-    Number,
-    Positive,
-    SpdxSpectrum,
-    TabulatedSpectrum,
-)
+from lamplit.spec_forms import Number, Positive, form_tag, spec_fault
+from lamplit.spectra_spec import Column, CsvSpectrum, SpdxSpectrum, TabulatedSpectrum
 from lamplit.spectrum import Array, SpectralDistribution
 
 _NM_PER_MM = 1e6
