@@ -107,6 +107,7 @@ class KeptSpectrum(_Kept):
 
     name: str
     unit: str
+    band_nm: float | None
     wavelengths_nm: list[float]
     values: list[float]
 
@@ -292,13 +293,14 @@ def _finite(values: dict[str, Any]) -> dict[str, Any]:
 
 def _kept_spectrum(one: shown.Spectrum) -> KeptSpectrum:
     return KeptSpectrum(
-        name=one.name, unit=one.unit, wavelengths_nm=one.wavelengths_nm.tolist(),
-        values=one.values.tolist(),
+        name=one.name, unit=one.unit, band_nm=one.band_nm,
+        wavelengths_nm=one.wavelengths_nm.tolist(), values=one.values.tolist(),
     )  # fmt: skip
 
 
 def _spectrum(one: KeptSpectrum) -> shown.Spectrum:
-    return shown.Spectrum(one.name, np.array(one.wavelengths_nm), np.array(one.values), one.unit)
+    wavelengths, values = np.array(one.wavelengths_nm), np.array(one.values)
+    return shown.Spectrum(one.name, wavelengths, values, one.unit, one.band_nm)
 
 
 def _function(one: KeptFunction, grid_xyz: Array, grid_error: Array) -> shown.FunctionResults:
