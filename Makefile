@@ -77,7 +77,7 @@ bench: $(CORE) $(VENV)/.tools $(PEERS)/.ready ## measure speed against peers; PA
 validate: $(CORE) $(VENV)/.tools $(PEERS)/.ready ## hold the physics against closed forms and Mitsuba; writes docs/validation.md
 	$(BIN)/python benchmarks/validate.py $(CASES)
 
-mutants: $(VENV)/.ready ## break the physics on purpose, fault by fault: do the tests notice? An hour
+mutants: $(CORE) $(VENV)/.tools ## break the physics on purpose, fault by fault: do the tests notice? An hour
 	$(BIN)/python tools/mutants.py $(NAMES)
 
 docs: $(CORE) $(VENV)/.tools ## make the pictures, tables and API pages of docs/ again

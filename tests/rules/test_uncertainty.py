@@ -11,7 +11,7 @@ import pytest
 from lamplit.rules import Finding, Verdict, find_rule, judge
 from lamplit.rules.decide import decision
 
-from .conftest import observe, power_law
+from .conftest import AMBER, observe, power_law
 
 
 def at_axis(verdict: Verdict) -> Finding:
@@ -87,21 +87,26 @@ def test_a_cell_that_surely_fails_goes_before_a_darker_one_that_scatters_more() 
     assert (own.outcome, own.got, own.h_deg) == ("fail", 0.29, 40.5)
 
 
-def test_no_light_at_a_point_is_0_cd_below_the_minimum_with_a_bound_on_sigma() -> None:
+def unlit_on_axis(bound_cd: float) -> Finding:
+    """Return the finding on the axis, where no light came and σ is an upper bound."""
     rule = find_rule("un-r148/S1")
     readings = observe(rule, power_law(100.0, 0.0), at={(0.0, 0.0): 0.0}, relative_error=0.01)
-    own = at_axis(judge(rule, readings))
+    covariance = readings.spot_xyz_covariance.copy()
+    covariance[readings.spot_cd == 0.0] = bound_cd**2 * np.eye(3)
+    return at_axis(judge(rule, replace(readings, spot_xyz_covariance=covariance)))
+
+
+def test_no_light_at_a_point_is_0_cd_below_the_minimum_with_a_bound_on_sigma() -> None:
+    own = unlit_on_axis(0.02)
     assert (own.outcome, own.got, own.margin_percent) == ("fail", 0.0, -100.0)
-    # Elsewhere 100 ± 1 cd: hits of 0.01 cd each. No hit at all bounds the mean by 3 of them.
-    assert own.standard_error == pytest.approx(0.015)
+    assert own.standard_error == pytest.approx(0.02)
     assert "upper bound" in own.remark
 
 
 def test_no_light_after_few_paths_is_undecided_and_never_a_pass() -> None:
-    rule = find_rule("un-r148/S1")
-    # 18 other spots of 100 ± 60 cd: hits of 36 cd. Three unseen ones would be 108 cd.
-    readings = observe(rule, power_law(100.0, 0.0), at={(0.0, 0.0): 0.0}, relative_error=0.6)
-    assert at_axis(judge(rule, readings)).outcome == "undecided"
+    # 2 σ reach to the minimum of 60 cd from a bound of 30 cd on.
+    assert unlit_on_axis(29.9).outcome == "fail"
+    assert unlit_on_axis(30.1).outcome == "undecided"
 
 
 def test_a_lamp_that_is_dark_everywhere_fails() -> None:
@@ -118,10 +123,29 @@ def test_a_cell_without_light_in_the_field_of_visibility_is_no_pass() -> None:
     def hole(h: np.ndarray, v: np.ndarray) -> np.ndarray:
         return np.where((np.abs(h - 40.5) < 0.1) & (np.abs(v - 10.5) < 0.1), 0.0, 100.0)
 
-    for cell_error, outcome in ((0.01, "fail"), (0.5, "undecided")):
-        verdict = judge(rule, observe(rule, hole, cell_error=cell_error))
+    # The minimum there is 0.3 cd.
+    for bound_cd, outcome in ((0.14, "fail"), (0.16, "undecided")):
+        readings = observe(rule, hole, cell_error=0.01)
+        error = np.where(readings.grid_cd == 0.0, bound_cd, readings.grid_standard_error_cd)
+        verdict = judge(rule, replace(readings, grid_standard_error_cd=error))
         own = next(one for one in verdict.findings if one.requirement.startswith("field"))
         assert (own.outcome, own.got, own.h_deg, own.v_deg) == (outcome, 0.0, 40.5, 10.5)
+
+
+@pytest.mark.parametrize(("error", "outcome"), [(0.21, "undecided"), (0.19, "fail")])
+def test_a_colour_is_judged_where_its_intensity_is_above_5_sigma(
+    error: float, outcome: str
+) -> None:
+    """X, Y and Z of a handful of paths scatter together: x and y do not seem to scatter at all."""
+    rule = find_rule("un-r148/S1")
+    readings = observe(rule, power_law(100.0, 0.0), xy=AMBER, relative_error=error)
+    verdict = judge(rule, readings)
+    own = next(one for one in verdict.findings if one.requirement.startswith("colour"))
+    assert own.outcome == outcome
+    if outcome == "undecided":
+        assert (own.got, own.unit, own.standard_error) == (100.0, "cd", pytest.approx(21.0))
+        assert own.paths_factor == pytest.approx((5 * 0.21) ** 2)
+        assert "too few paths for a colour" in own.remark
 
 
 def test_the_sigma_of_a_ratio_is_that_of_the_delta_method() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 from lamplit.engine.lumens import LumenLedger
 from lamplit.engine.receivers import Goniometer
 from lamplit.errors import LamplitError, nearest_name
+from lamplit.photometry.chance import covariance_of_mean, let_out, variance_of_mean
 from lamplit.photometry.observed import Observed
 
 if TYPE_CHECKING:
@@ -36,9 +38,10 @@ class Measurement:
     """Luminous intensity and its colour over directions, for every light group.
 
     Walks are made in b independent batches of as many paths each. A mean over the batches is the
-    result; its standard error is √(s²/b) of their spread, for any weighted sum of groups. Where no
-    path of a group was caught, the standard error is what one path with the mean flux would have
-    brought: an upper bound.
+    result; its standard error is √(s²/b) of their spread, for any weighted sum of groups. Where few
+    paths of a group were caught, or none, it is an upper bound (`lamplit.photometry.chance`): hits
+    weigh as much as they do over the whole grid, and where all is dark as much as paths that are
+    sent out.
     """
 
     goniometer: Goniometer
@@ -112,12 +115,14 @@ class Measurement:
         weights = self.weights(lit)
         spots = np.einsum("g,bgpi->bpi", weights, self.spot_xyz)
         cells = np.einsum("g,bgvhi->bvhi", weights, self.grid_xyz)
-        spot_floor = self._floor(weights, self.spot_xyz, self.goniometer.spot_sr)
-        covariance = _covariance(spots)
-        diagonal = np.arange(3)
-        covariance[:, diagonal, diagonal] += spot_floor**2
-        cell_floor = self._floor(weights, self.grid_xyz, self.goniometer.cell_sr[..., None])
-        variance = _variance(cells[..., 1]) + cell_floor[..., 1] ** 2
+        covariance = covariance_of_mean(spots)
+        variance = variance_of_mean(cells[..., 1])
+        for group, weight in enumerate(weights):
+            few = self._few_hits(group, self.spot_xyz[:, group], self.goniometer.spot_sr)
+            covariance += weight**2 * few
+            of_cells = self.grid_xyz[:, group, ..., 1]
+            spread, bound = self._let_out(group, of_cells, self.goniometer.cell_sr)
+            variance += weight**2 * (bound - spread)
         own = lit if isinstance(lit, str) else "all light" if lit is None else "+".join(lit)
         return Observed(
             name=name or own,
@@ -132,12 +137,32 @@ class Measurement:
             paths=self.paths,
         )
 
-    def _floor(self, weights: Array, values: Array, solid_angle: Array | float) -> Array:
-        """Return the standard error, without the first two axes, of what no path met."""
-        one = self.emitted_xyz * weights[:, None] / max(self.paths, 1)
-        missed = (values == 0.0).all(axis=0)
-        one = one.reshape(one.shape[0], *[1] * (missed.ndim - 2), 3)
-        return np.sqrt(np.where(missed, one**2, 0.0).sum(axis=0)) / solid_angle
+    def _let_out(self, group: int, y: Array, solid_angle: Array | float) -> tuple[Array, Array]:
+        """Return the variances of the mean of a group's Y (b, …): of the spread, and as a bound."""
+        mean, variance = y.mean(axis=0), variance_of_mean(y)
+        unseen, seen = self._hits_lm[group]
+        return variance, let_out(mean, variance, np.where(mean > 0.0, seen, unseen) / solid_angle)
+
+    def _few_hits(self, group: int, xyz: Array, solid_angle: float) -> Array:
+        """Return what the covariance of a group's X, Y, Z (b, p, 3) grows by, (p, 3, 3)."""
+        spread, bound = self._let_out(group, xyz[..., 1], solid_angle)
+        lit = spread > 0.0
+        growth = np.divide(bound - spread, spread, out=np.zeros_like(bound), where=lit)
+        sent = self.emitted_xyz[group] / (self.emitted_xyz[group, 1] or 1.0)
+        unseen = np.where(lit, 0.0, bound)[:, None, None] * np.diag(sent**2)
+        return growth[:, None, None] * covariance_of_mean(xyz) + unseen
+
+    @cached_property
+    def _hits_lm(self) -> Array:
+        """What a hit brings, in lm over all paths, (g, 2): where none came, and elsewhere.
+
+        A path that is sent out, and Σσ²/Σ over the grid, which of hits of weights w is Σw²/Σw.
+        """
+        lumens = self.grid_xyz[..., 1] * self.goniometer.cell_sr
+        variance = variance_of_mean(lumens).sum(axis=(-2, -1))
+        mean = lumens.mean(axis=0).sum(axis=(-2, -1))
+        seen = np.divide(variance, mean, out=np.zeros_like(mean), where=mean > 0.0)
+        return np.stack([self.emitted_xyz[:, 1] / max(self.paths, 1), seen], axis=-1)
 
     @property
     def emitted_lm(self) -> dict[str, float]:
@@ -202,15 +227,3 @@ class Measurement:
         from lamplit.engine.labelled_light import labelled
 
         return labelled(self)
-
-
-def _variance(batches: Array) -> Array:
-    """Return the variance of the mean over the first axis."""
-    return batches.var(axis=0, ddof=1) / batches.shape[0]
-
-
-def _covariance(batches: Array) -> Array:
-    """Return the covariance (…, 3, 3) of the mean over the first axis of (b, …, 3)."""
-    off = batches - batches.mean(axis=0)
-    count = batches.shape[0]
-    return np.einsum("b...i,b...j->...ij", off, off) / (count * (count - 1))

@@ -8,7 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from lamplit.photometry.chromaticity import Chromaticities, chromaticity_covariance
+
 Array = NDArray[np.float64]
+
+#: A colour is known where the intensity is above so many of its standard errors. That takes some
+#: thirty hits. Of one hit X, Y and Z scatter together, so that x and y do not seem to scatter.
+COLOUR_SIGMAS = 5.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -16,7 +22,8 @@ class Observed:
     """What a goniometer reads of one function of a lamp: at spots, and over an H–V grid.
 
     Directions are (sin H cos V, sin V, cos H cos V) in the lamp's frame, whose axis is +z with +y
-    up: H > 0 is to the right of an observer before the lamp. Every σ is one standard error.
+    up: H > 0 is to the right of an observer before the lamp. Every σ is one standard error, and an
+    upper bound where few walks or none arrived (`lamplit.photometry.chance`).
     """
 
     #: Name of the function, such as "stop".
@@ -47,6 +54,14 @@ class Observed:
     def spot_standard_error_cd(self) -> Array:
         """Return the standard error of `spot_cd`, (p,), in cd."""
         return np.sqrt(self.spot_xyz_covariance[:, 1, 1])
+
+    @property
+    def spot_colours(self) -> Chromaticities:
+        """Return the chromaticities at the spots, known where Y is above 5 σ."""
+        xy, covariance = chromaticity_covariance(self.spot_xyz, self.spot_xyz_covariance)
+        cd = self.spot_cd
+        is_known = (cd > 0.0) & (cd >= COLOUR_SIGMAS * self.spot_standard_error_cd)
+        return Chromaticities(xy, np.where(is_known[:, None, None], covariance, np.nan), is_known)
 
     @property
     def grid_cd(self) -> Array:

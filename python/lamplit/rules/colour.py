@@ -22,6 +22,11 @@ _FILE = Path(__file__).parent / "library" / "colours.toml"
 
 #: A chromaticity so near to a border lies on it, and the regulations' ≤ let it through.
 _ON_BORDER = 1e-9
+#: One so little beyond the spectral locus or the purple line counts as the nearest on it: no light
+#: lies beyond, but a table at each nm joined by chords does not say where that is any better. From
+#: 545 nm on the curve bulges past its chords by 8·10⁻⁶ and less, beyond 700 nm the table's last
+#: digit moves it by 10⁻⁷. The edges that a regulation draws, and their corners, stay exact.
+_ON_LOCUS = 1e-5
 #: The least variance of x and y: a colour that does not scatter has a circle of this size.
 _SMALLEST_VARIANCE = 1e-18
 
@@ -58,10 +63,26 @@ class Region:
     crossable: NDArray[np.bool_]
 
     def contains(self, xy: ArrayLike) -> bool:
-        """Return whether a chromaticity (2,) lies in the region or on its border."""
+        """Return whether a chromaticity (2,) lies in the region or on its border.
+
+        So does one that lies beyond the spectral locus by 10⁻⁵ or less, square to it.
+        """
         point = np.asarray(xy, dtype=np.float64)
-        distance, _ = _nearest(point, self.border)
-        return distance <= _ON_BORDER or _inside(point, self.border)
+        distance, at = _nearest(point, self.border)
+        if distance <= _ON_BORDER or _inside(point, self.border):
+            return True
+        return distance <= _ON_LOCUS and self._faces_limit(point, at)
+
+    def _faces_limit(self, point: Array, at: int) -> bool:
+        """Return whether piece ``at`` limits all light and its end is not the nearest point."""
+        after = (at + 1) % len(self.border)
+        if self.crossable[at]:
+            return False
+        start, end = self.border[at], self.border[after]
+        share = float((point - start) @ (end - start)) / float((end - start) @ (end - start))
+        return (share > 0.0 or not self.crossable[at - 1]) and (
+            share < 1.0 or not self.crossable[after]
+        )
 
     def border_distance(self, xy: ArrayLike, covariance: ArrayLike | None = None) -> BorderDistance:
         """Return how far a chromaticity (2,) is inside, also in its standard errors.
@@ -84,15 +105,6 @@ class Region:
         sign = 1.0 if inside else -1.0
         error = distance / sigmas if sigmas > 0.0 else float(np.sqrt(np.trace(spread)))
         return BorderDistance(sign * distance, sigmas, error, self.edges[at])
-
-
-def chromaticity_covariance(xyz: ArrayLike, covariance: ArrayLike) -> Array:
-    """Return the covariance (2, 2) of x and y from that of X, Y, Z (3, 3), by the delta method."""
-    values = np.asarray(xyz, dtype=np.float64)
-    total = float(values.sum())
-    x, y = values[0] / total, values[1] / total
-    slopes = np.array([[1.0 - x, -x, -x], [-y, 1.0 - y, -y]]) / total
-    return slopes @ np.asarray(covariance, dtype=np.float64) @ slopes.T
 
 
 @cache

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 OR MIT
-"""What an `Observed` says in one direction or in cells, with an honest σ where no light arrived."""
+"""What an `Observed` says in one direction or in cells."""
 
 from __future__ import annotations
 
@@ -18,8 +18,6 @@ Mask = NDArray[np.bool_]
 
 #: Two directions closer than this are the same.
 _SAME_DEG = 0.01
-#: With no hit at all, the 95 % upper bound of a Poisson count is 3 hits: 2 σ of 1.5 hits.
-_HITS_UNSEEN = 1.5
 _DARK = "no light arrives here; σ is an upper bound"
 
 
@@ -64,37 +62,18 @@ class CellReadings:
         return float(widths.max())
 
 
-def _bound(squared_errors: Array, cd: Array) -> float:
-    """Return an upper bound of σ where no path arrived, from the places where some did.
-
-    n hits of a path's weight w give n·w with the variance n·w²: variance/mean tells w.
-    """
-    lit = cd > 0.0
-    total = float(cd[lit].sum())
-    return _HITS_UNSEEN * float(squared_errors[lit].sum()) / total if total > 0.0 else 0.0
-
-
 def spot_readings(observed: Observed) -> tuple[Reading, ...]:
     """Return the reading of each spot, (p,)."""
-    cd, error = observed.spot_cd, observed.spot_standard_error_cd
-    bound = _bound(error**2, cd)
-    return tuple(
-        Reading(float(value), float(sigma))
-        if value > 0.0
-        else Reading(float(value), max(float(sigma), bound), _DARK)
-        for value, sigma in zip(cd, error, strict=True)
-    )
+    pairs = zip(observed.spot_cd, observed.spot_standard_error_cd, strict=True)
+    return tuple(Reading(float(cd), float(error), "" if cd > 0.0 else _DARK) for cd, error in pairs)
 
 
 def cell_readings(observed: Observed) -> CellReadings:
-    """Return the grid of ``observed``; a cell's solid angle shrinks with cos V."""
+    """Return the grid of ``observed``."""
     h_edges, v_edges = observed.grid_h_edges_deg, observed.grid_v_edges_deg
     v = 0.5 * (v_edges[:-1] + v_edges[1:])
-    cosine = np.cos(np.radians(v))[:, None]
-    cd, error = observed.grid_cd, observed.grid_standard_error_cd
-    bound = _bound(error**2 * cosine, cd) / cosine
-    sigma = np.where(cd > 0.0, error, np.maximum(error, bound))
-    return CellReadings(cd, sigma, 0.5 * (h_edges[:-1] + h_edges[1:]), v, h_edges, v_edges)
+    h = 0.5 * (h_edges[:-1] + h_edges[1:])
+    return CellReadings(observed.grid_cd, observed.grid_standard_error_cd, h, v, h_edges, v_edges)
 
 
 def spot_index(observed: Observed, h_deg: float, v_deg: float, rule: str) -> int:

@@ -10,8 +10,9 @@ from math import exp
 import numpy as np
 import pytest
 
+from lamplit.photometry.chromaticity import chromaticity_covariance
 from lamplit.photometry.observed import Observed
-from lamplit.report.photometry.colour import chromaticity_covariance, ellipse_of
+from lamplit.report.photometry.colour import ellipse_of
 from lamplit.report.photometry.cuts import cut_along_h, cut_along_v, suits_logarithm
 from lamplit.report.photometry.energy import bands_of, grouped
 from lamplit.report.photometry.isocandela import (

@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from lamplit.report.photometry.results import ColourRegion, FunctionResults
 
 Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 _REGION_INK = {"red": "#b3261e", "amber": "#b06a00", "yellow": "#b06a00", "white": "#6b6a66"}
 #: Where the close view stands, in the axes' own 0 to 1: left, bottom, width, height.
@@ -45,26 +44,6 @@ class Ellipse(NamedTuple):
     angle_deg: float
 
 
-def chromaticity_covariance(xyz: Array, covariance: Array) -> tuple[Array, Array]:
-    """Return x, y (…, 2) and their covariance (…, 2, 2) from X, Y, Z (…, 3) and theirs.
-
-    To first order (delta method): Σ_xy = J Σ_XYZ Jᵀ with J = (∂(x, y)/∂(X, Y, Z)), where
-    ∂x/∂X = (1 − x)/S, ∂x/∂Y = ∂x/∂Z = −x/S, ∂y/∂Y = (1 − y)/S, ∂y/∂X = ∂y/∂Z = −y/S and
-    S = X + Y + Z. NaN where S is not above zero: black has no chromaticity.
-    """
-    total = xyz.sum(axis=-1)
-    lit = total > 0.0
-    safe = np.where(lit, total, 1.0)
-    xy = np.where(lit[..., None], xyz[..., :2] / safe[..., None], np.nan)
-    jacobian = (np.eye(3)[:2] - xy[..., :, None]) / safe[..., None, None]
-    return xy, jacobian @ covariance @ np.swapaxes(jacobian, -1, -2)
-
-
-def chromaticity_errors(covariance: Array) -> Array:
-    """Return the standard errors (…, 2) of x and y from their covariance (…, 2, 2)."""
-    return np.sqrt(np.maximum(np.diagonal(covariance, axis1=-2, axis2=-1), 0.0))
-
-
 def ellipse_of(covariance: Array, sigmas: float = 2.0) -> Ellipse:
     """Return the ellipse (d/σ)² = ``sigmas``² of a covariance (2, 2).
 
@@ -78,11 +57,10 @@ def ellipse_of(covariance: Array, sigmas: float = 2.0) -> Ellipse:
 
 
 def draw_chromaticity(function: FunctionResults) -> Figure | None:
-    """Draw the spots' chromaticities by the legal region; None where no light reached a spot."""
+    """Draw the spots' chromaticities by the legal region; None where that of none is known."""
     observed = function.observed
-    xy, covariance = chromaticity_covariance(observed.spot_xyz, observed.spot_xyz_covariance)
-    lit = _lit(function.observed)
-    if not lit.any():
+    xy, covariance, known = observed.spot_colours
+    if not known.any():
         return None
     region = function.region
     figure = new_figure(4.7, 4.7)
@@ -94,30 +72,26 @@ def draw_chromaticity(function: FunctionResults) -> Figure | None:
     )
     axes = figure.add_axes((0.135, 0.105, 0.845, 0.755))
     dress(axes, x="x", y="y")
-    _window(axes, xy[lit], region)
+    _window(axes, xy[known], region)
     _draw_locus(axes, covered=(_CLOSE_VIEW[0] - 0.16, _CLOSE_VIEW[1] - 0.08))
     if region is not None:
         _draw_region(axes, region)
-    for place in np.flatnonzero(lit):
+    for place in np.flatnonzero(known):
         _draw_ellipse(axes, xy[place], covariance[place])
     _draw_overview(axes, region)
-    _draw_close_view(axes, function, xy, covariance)
+    _draw_close_view(axes, function)
     return figure
 
 
-def _lit(observed: Observed) -> Flags:
-    """Return which spots any light reached, (p,)."""
-    return np.asarray(observed.spot_xyz.sum(axis=-1) > 0.0)
-
-
-def _draw_close_view(axes: Axes, function: FunctionResults, xy: Array, covariance: Array) -> None:
+def _draw_close_view(axes: Axes, function: FunctionResults) -> None:
     """Draw the points once more, as large as fits, where no colour is: to the upper right."""
-    lit = _lit(function.observed)
-    reach = 2.0 * chromaticity_errors(covariance[lit])
-    low, high = (xy[lit] - reach).min(axis=0), (xy[lit] + reach).max(axis=0)
+    colours = function.observed.spot_colours
+    xy, covariance, known = colours
+    reach = 2.0 * colours.standard_error[known]
+    low, high = (xy[known] - reach).min(axis=0), (xy[known] + reach).max(axis=0)
     half = max(0.6 * float((high - low).max()), 5e-5)
     if half > 0.3 * float(np.ptp(axes.get_xlim())):
-        _name_some(axes, function.observed, xy, lit)
+        _name_some(axes, function.observed)
         return
     close = axes.inset_axes(_CLOSE_VIEW)
     close.set_facecolor(PAPER)
@@ -130,11 +104,11 @@ def _draw_close_view(axes: Axes, function: FunctionResults, xy: Array, covarianc
         _draw_region(close, function.region)
     close.set(xlim=limits[0], ylim=limits[1], aspect="auto")
     _draw_locus(close)
-    for place in np.flatnonzero(lit):
+    for place in np.flatnonzero(known):
         _draw_ellipse(close, xy[place], covariance[place])
     close.locator_params(nbins=3)
     close.ticklabel_format(useOffset=False)
-    _name_some(close, function.observed, xy, lit)
+    _name_some(close, function.observed)
     axes.indicate_inset_zoom(close, edgecolor=QUIET, alpha=0.8, linewidth=0.7)
 
 
@@ -198,11 +172,12 @@ def _draw_ellipse(axes: Axes, xy: Array, covariance: Array) -> None:
     axes.plot(*xy, "o", ms=2.4, color=INK, zorder=4)
 
 
-def _name_some(axes: Axes, observed: Observed, xy: Array, lit: Flags) -> None:
+def _name_some(axes: Axes, observed: Observed) -> None:
     """Name the spot on the axis and the one whose colour is farthest from it."""
-    on_axis = lit & (observed.spot_h_deg == 0.0) & (observed.spot_v_deg == 0.0)
-    start = int(np.argmax(on_axis)) if on_axis.any() else int(np.argmax(lit))
-    away = np.where(lit, np.hypot(*(xy - xy[start]).T), -1.0)
+    xy, _, known = observed.spot_colours
+    on_axis = known & (observed.spot_h_deg == 0.0) & (observed.spot_v_deg == 0.0)
+    start = int(np.argmax(on_axis)) if on_axis.any() else int(np.argmax(known))
+    away = np.where(known, np.hypot(*(xy - xy[start]).T), -1.0)
     farthest = int(np.argmax(away))
     for place in dict.fromkeys((start, farthest)):
         h_deg, v_deg = float(observed.spot_h_deg[place]), float(observed.spot_v_deg[place])

@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lamplit.errors import LamplitError
-from lamplit.report.photometry.colour import chromaticity_covariance, chromaticity_errors
 from lamplit.report.photometry.isocandela import middles
 
 if TYPE_CHECKING:
@@ -94,10 +93,10 @@ def read_grid(path: Path, shapes: Mapping[str, tuple[int, int]]) -> dict[str, tu
 
 def _spots(one: FunctionResults) -> Iterable[Sequence[object]]:
     seen = one.observed
-    xy, covariance = chromaticity_covariance(seen.spot_xyz, seen.spot_xyz_covariance)
-    errors = chromaticity_errors(covariance)
+    colours = seen.spot_colours
+    xy, errors = colours.xy, colours.standard_error
     with np.errstate(divide="ignore", invalid="ignore"):
-        correlation = covariance[:, 0, 1] / errors.prod(axis=-1)
+        correlation = colours.covariance[:, 0, 1] / errors.prod(axis=-1)
     for at in range(len(seen.spot_h_deg)):
         yield (
             one.name, seen.spot_h_deg[at], seen.spot_v_deg[at], seen.spot_cd[at],

@@ -17,7 +17,6 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from lamplit.errors import LamplitError
 from lamplit.photometry.observed import Observed
 from lamplit.report.photometry import results as shown
-from lamplit.report.photometry.colour import chromaticity_covariance, chromaticity_errors
 from lamplit.report.photometry.csv_files import read_grid
 from lamplit.report.photometry.isocandela import brightest
 from lamplit.report.photometry.table import in_words
@@ -38,7 +37,10 @@ class _Kept(BaseModel):
 
 
 class KeptSpot(_Kept):
-    """A measured direction; the chromaticity is null where no light came."""
+    """A measured direction.
+
+    The chromaticity is null where no light came, its standard error where too little did.
+    """
 
     h_deg: float
     v_deg: float
@@ -105,6 +107,7 @@ class KeptSpectrum(_Kept):
 
     name: str
     unit: str
+    band_nm: float | None
     wavelengths_nm: list[float]
     values: list[float]
 
@@ -250,8 +253,8 @@ def _kept_function(one: shown.FunctionResults) -> KeptFunction:
 
 
 def _kept_spots(seen: Observed) -> list[KeptSpot]:
-    xy, covariance = chromaticity_covariance(seen.spot_xyz, seen.spot_xyz_covariance)
-    errors = chromaticity_errors(covariance)
+    colours = seen.spot_colours
+    xy, errors = colours.xy, colours.standard_error
     lit = seen.spot_xyz.sum(axis=-1) > 0.0
     return [
         KeptSpot(
@@ -261,7 +264,7 @@ def _kept_spots(seen: Observed) -> list[KeptSpot]:
             xyz_cd=seen.spot_xyz[at].tolist(),
             xyz_covariance_cd2=seen.spot_xyz_covariance[at].tolist(),
             chromaticity_xy=xy[at].tolist() if lit[at] else None,
-            chromaticity_standard_error=errors[at].tolist() if lit[at] else None,
+            chromaticity_standard_error=errors[at].tolist() if colours.is_known[at] else None,
         )
         for at in range(len(seen.spot_h_deg))
     ]  # fmt: skip
@@ -290,13 +293,14 @@ def _finite(values: dict[str, Any]) -> dict[str, Any]:
 
 def _kept_spectrum(one: shown.Spectrum) -> KeptSpectrum:
     return KeptSpectrum(
-        name=one.name, unit=one.unit, wavelengths_nm=one.wavelengths_nm.tolist(),
-        values=one.values.tolist(),
+        name=one.name, unit=one.unit, band_nm=one.band_nm,
+        wavelengths_nm=one.wavelengths_nm.tolist(), values=one.values.tolist(),
     )  # fmt: skip
 
 
 def _spectrum(one: KeptSpectrum) -> shown.Spectrum:
-    return shown.Spectrum(one.name, np.array(one.wavelengths_nm), np.array(one.values), one.unit)
+    wavelengths, values = np.array(one.wavelengths_nm), np.array(one.values)
+    return shown.Spectrum(one.name, wavelengths, values, one.unit, one.band_nm)
 
 
 def _function(one: KeptFunction, grid_xyz: Array, grid_error: Array) -> shown.FunctionResults:

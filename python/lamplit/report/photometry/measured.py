@@ -7,9 +7,18 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
+from lamplit.photometry.chance import variance_of_mean
 from lamplit.report.photometry.judged import judged
 from lamplit.report.photometry.results import EnergyFlow, FunctionResults, Results, Spectrum
+
+Array = NDArray[np.float64]
+
+#: So many bands of a measurement are drawn as one: all, a whole lane, several lanes. One lane is
+#: filled evenly by every path; its parts take turns.
+_BANDS_TOGETHER = (1, 5, 10, 20)
+_HITS_IN_BAND = 30.0
 
 if TYPE_CHECKING:
     from lamplit.engine.measurement import Measurement
@@ -136,7 +145,15 @@ def _on_axis(measurement: Measurement, one: Asked) -> Spectrum | None:
         return None
     weights = measurement.weights(one.light or None)
     values = weights @ measurement.spot_spectra[:, int(at[0])]
-    return Spectrum(f"{one.name} at HV", measurement.band_centres_nm, values, "W/(sr nm)")
+    seen = _observed(measurement, one.name, one.light)
+    cd, error = float(seen.spot_cd[at[0]]), float(seen.spot_standard_error_cd[at[0]])
+    fine = Spectrum(f"{one.name} at HV", measurement.band_centres_nm, values, "W/(sr nm)")
+    return in_bands(fine, _hits(cd, error))
+
+
+def _hits(flux: float, standard_error: float) -> float:
+    """Return how many hits of one weight would scatter so much."""
+    return (flux / standard_error) ** 2 if standard_error > 0.0 else float("inf")
 
 
 def _spectra(measurement: Measurement) -> tuple[Spectrum, ...]:
@@ -152,12 +169,39 @@ def _spectra(measurement: Measurement) -> tuple[Spectrum, ...]:
         for group, source in emitted.items()
         if measurement.light is None
     ]
-    leaving = (
-        Spectrum(f"{name}, leaving the lamp", measurement.band_centres_nm, values, "W/nm")
-        for name, values in zip(measurement.groups, measurement.out_spectra, strict=True)
-        if values.size and values.any()
-    )
-    return (*shapes, *leaving)
+    lumens = measurement.out_xyz.mean(axis=0)[:, 1]
+    errors = np.sqrt(variance_of_mean(measurement.out_xyz[..., 1]))
+    lumens = measurement.out_xyz.mean(axis=0)[:, 1]
+    errors = np.sqrt(variance_of_mean(measurement.out_xyz[..., 1]))
+    nm = measurement.band_centres_nm
+    leaving = [
+        in_bands(
+            Spectrum(f"{name}, leaving the lamp", nm, measurement.out_spectra[at], "W/nm"),
+            _hits(float(lumens[at]), float(errors[at])),
+        )
+        for at, name in enumerate(measurement.groups)
+    ]
+    return (*shapes, *(one for one in leaving if one is not None))
+
+
+def in_bands(fine: Spectrum, hits: float) -> Spectrum | None:
+    """Return a measured spectrum in bands so wide that none is a matter of a few hits.
+
+    ``fine`` has bands evenly apart, and ``hits`` paths made it. Where dispersion parts the
+    wavelengths, a hit tells of one alone: a band has at least thirty of them, were all bands alike.
+    None of darkness, and where not even the widest bands have as many: too few paths.
+    """
+    middles_nm, values = fine.wavelengths_nm, fine.values
+    if len(values) < 2 or not values.any():
+        return None
+    step = float(middles_nm[1] - middles_nm[0])
+    for several in _BANDS_TOGETHER:
+        count, rest = divmod(len(values), several)
+        if rest == 0 and hits >= _HITS_IN_BAND * count:
+            middles = middles_nm.reshape(count, several).mean(axis=1)
+            means = values.reshape(count, several).mean(axis=1)
+            return Spectrum(fine.name, middles, means, fine.unit, step * several)
+    return None
 
 
 def _geometry(measurement: Measurement) -> dict[str, str]:

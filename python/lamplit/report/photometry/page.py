@@ -13,7 +13,6 @@ import numpy as np
 
 from lamplit.errors import LamplitError
 from lamplit.report.photometry import table
-from lamplit.report.photometry.colour import chromaticity_covariance, chromaticity_errors
 from lamplit.report.photometry.plots import Plot, draw_plots
 from lamplit.report.photometry.results import tally
 from lamplit.report.photometry.style import MARKS, cd, spread
@@ -158,11 +157,11 @@ def _on_axis(one: FunctionResults) -> dict[str, str]:
         "at HV": f"{cd(float(seen.spot_cd[place]))} "
         f"{spread(2.0 * float(seen.spot_standard_error_cd[place]))} cd"
     }
-    xy, covariance = chromaticity_covariance(seen.spot_xyz, seen.spot_xyz_covariance)
-    if np.isfinite(xy[place]).all():
-        two_sigma = 2.0 * chromaticity_errors(covariance[place])
+    colours = seen.spot_colours
+    if colours.is_known[place]:
         facts["x"], facts["y"] = (
-            f"{value:.4f} ± {error:.1g}" for value, error in zip(xy[place], two_sigma, strict=True)
+            f"{value:.4f} ± {2.0 * error:.1g}"
+            for value, error in zip(colours.xy[place], colours.standard_error[place], strict=True)
         )
     return facts
 

@@ -38,6 +38,8 @@ class Spectrum:
     #: (n,), in ``unit``.
     values: Array
     unit: str
+    #: Width of the bands that ``values`` are means over; None of a spectrum that is known smoothly.
+    band_nm: float | None = None
 
 
 @dataclass(frozen=True)

@@ -24,6 +24,7 @@ _INKS = (INK, ACCENT, "#b3261e", "#1b7340", "#a36200", "#6d3b8f", "#6b6a66", "#2
 def draw_spectra(spectra: Sequence[Spectrum], *, title: str) -> Figure | None:
     """Draw ``spectra``, each relative to its own greatest value; None if all are dark.
 
+    Measured ones are steps as wide as their bands: a line would show shapes that nobody measured.
     The band below the wavelengths has their colours, as far as a screen can show them.
     """
     lit = [one for one in spectra if one.values.size and one.values.max() > 0.0]
@@ -37,10 +38,14 @@ def draw_spectra(spectra: Sequence[Spectrum], *, title: str) -> Figure | None:
         peak = float(one.values.max())
         height = f"{peak:.3g} {one.unit}" if one.unit else "relative"
         at = float(one.wavelengths_nm[int(one.values.argmax())])
+        where = f"peak at {at:.0f} nm"
+        if one.band_nm is not None:
+            where += f", bands of {one.band_nm:.0f} nm"
         axes.plot(
             one.wavelengths_nm, one.values / peak, color=_INKS[place], linewidth=1.3,
             linestyle="-" if place < 4 else (0, (5, 2)),
-            label=f"{shortened(one.name, 30)}\n{height}, peak at {at:.0f} nm",
+            drawstyle="default" if one.band_nm is None else "steps-mid",
+            label=f"{shortened(one.name, 30)}\n{height}, {where}",
         )  # fmt: skip
     axes.set(xlim=(380.0, 780.0), ylim=(0.0, 1.05))
     axes.set_xticks(np.arange(400, 781, 50), [])

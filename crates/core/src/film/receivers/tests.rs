@@ -120,3 +120,21 @@ fn a_map_counts_its_rows_from_the_top_and_its_front_alone() {
     let from_behind = Ray::endless(DVec3::Z * 100.0, -DVec3::Z);
     assert_eq!(map.pixel(&from_behind), None);
 }
+
+#[test]
+fn bands_follow_each_other_by_wavelength() {
+    // λ rises by (lane · phases + phase); each lane's phases are cut into five bands.
+    let (phases, per_lane) = (25, 5);
+    for lane in 0..LANES {
+        for phase in 0..phases {
+            let mut flux = SampledSpectrum::ZERO;
+            flux.0[lane] = 2.0;
+            let mut bands = vec![0.0; 2 * per_lane * LANES];
+            add_bands(&mut bands, 1, per_lane, flux, (phase, phases));
+            let number = (lane * phases + phase) / (phases / per_lane);
+            let expected = per_lane * LANES + number;
+            assert_eq!(bands.iter().position(|value| *value == 2.0), Some(expected));
+            assert_eq!(bands.iter().sum::<f64>(), 2.0);
+        }
+    }
+}
