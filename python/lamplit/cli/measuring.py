@@ -97,7 +97,7 @@ class Budget:
     @property
     def most_paths(self) -> int | None:
         """The most paths to walk; None for no end but the time or the error."""
-        from lamplit.engine.measure import USUAL_PATHS
+        from lamplit.engine.measuring_run import USUAL_PATHS
 
         if self.paths is not None or self.error is not None or self.time_s is not None:
             return self.paths
