@@ -61,7 +61,10 @@ class ReflexMeasurement:
         for part, angles in zip(self.parts, self.angles, strict=True):
             seen = part.observed()
             values = _MCD_PER_CD * np.stack([seen.spot_cd, seen.spot_standard_error_cd], axis=-1)
-            found += [ReflexReading(*own, *value) for own, value in zip(angles, values.tolist(), strict=True)]
+            found += [
+                ReflexReading(*own, *value)
+                for own, value in zip(angles, values.tolist(), strict=True)
+            ]
         return tuple(found)
 
     @property
@@ -115,10 +118,10 @@ def measure_reflector(
     ``receiver_deg`` stand at (H, V + observation angle). That is the system of CIE 54.2 with
     β₁ = V, β₂ = H and no rotation. Both are in the far field; what shines in the scene is dark.
 
-    ``paths`` are those of each entrance direction. ``error`` is the relative standard error that all
-    readings go down to, ``time_s`` the seconds to walk for, ``until`` is asked after every round
-    whether that is enough; with any of them, ``paths`` is the most (2²⁶ if neither it nor a time
-    is given).
+    ``paths`` are those of each entrance direction. ``error`` is the relative standard error that
+    all readings go down to, ``time_s`` the seconds to walk for, ``until`` is asked after every
+    round whether that is enough; with any of them, ``paths`` is the most (2²⁶ if neither it nor a
+    time is given).
 
     Raises:
         LamplitError: The scene has no axis, or an argument cannot be used.
@@ -226,7 +229,7 @@ class _Rounds:
         return replace(found, complete=not has_aim)
 
     def _walk(self, wanted: int, most: int, time_s: float | None) -> tuple[bool, bool]:
-        """Bring every direction to ``wanted`` paths of a batch; tell whether in time, and stopped."""
+        """Bring all to ``wanted`` paths of a batch; return whether in time, and whether stopped."""
         for at, run in enumerate(self.runs):
             left = None
             if time_s is not None:

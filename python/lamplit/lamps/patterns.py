@@ -99,9 +99,9 @@ def cube_corner_patch(
     return clipped(outline, xy, triangles, height, snap_mm=0.02 * side / divisions)
 
 
-#: RMS tilt of a face whose corners are off by 1/side in the root mean square, inverted. The heights
-#: z of a triangle's corners have the gradient Σ z ∇λ; along a slope of √2 a gradient tilts the
-#: normal by a third of it, across by 1/√3: √(8/9) for equilateral faces, √(8/3) for those of thirds.
+#: RMS error of the corners' heights z, in sides, for each radian of RMS tilt. The gradient of a
+#: face is Σ z ∇λ; where the slope is √2, an error of it tilts the normal by a third along the
+#: slope, by 1/√3 across: in all √(8/9) z for equilateral faces, √(8/3) z for thirds of them.
 _TILT = {"hexagonal": np.sqrt(9.0 / 8.0), "triangular": np.sqrt(3.0 / 8.0)}
 #: Errors are no larger than so many standard deviations, and no part comes nearer to the front.
 _MOST_SIGMAS = 4.0

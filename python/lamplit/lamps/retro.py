@@ -57,7 +57,7 @@ class Parameters(LampParameters):
             description="RMS tilt of the cubes' faces from their true place; 0 sends all light "
             "straight back",
         ),
-    ] = 6.0
+    ] = 7.5
     plate_thickness_mm: Annotated[
         float, Field(ge=1.0, le=6.0, description="from the front to the nearest groove behind")
     ] = 2.0
@@ -106,7 +106,9 @@ def _plate(p: Parameters, cover: Cover) -> tuple[Solid, float]:
     around = 3.2 * cover.optics.perimeter_mm / p.pitch_mm * divisions
     total = 2.0 * faces + 2.0 * around * (2.7 * rolls + 5.0)
     best = int(np.argmin(np.abs(np.log(total / (0.85 * p.triangles)))))
-    patch = cube_corner_patch(cover.optics, p.aperture, p.pitch_mm, int(divisions[best]), p.cube_error_arcmin)
+    patch = cube_corner_patch(
+        cover.optics, p.aperture, p.pitch_mm, int(divisions[best]), p.cube_error_arcmin
+    )
     roll = int(rolls[best])
     depth = p.plate_thickness_mm + cover.pedestal + float(patch.height.max())
     return cover.solid(patch, patch.height, roll), depth

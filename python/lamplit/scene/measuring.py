@@ -133,7 +133,7 @@ def check_measuring(scene: Scene) -> None:
     for at, reflector in enumerate(settings.reflectors):
         if reflector.name in names[: len(functions) + at]:
             raise SceneError(
-                f"a function or reflector is called {reflector.name!r} already; choose another name",
+                f"another one is called {reflector.name!r} too; choose another name",
                 where=f"measure.reflectors[{at}].name",
             )
     groups = set(light_groups(scene))
