@@ -214,7 +214,8 @@ class _Rounds:
         has_aim = error is not None or enough is not None
         usual = MOST_IN_BATCH * _core.BATCHES if time_s else _MOST_OPEN if has_aim else USUAL_PATHS
         most = min(math.ceil((paths or usual) / _core.BATCHES), MOST_IN_BATCH)
-        for wanted in _doubled(min(FIRST_ROUND, most), most):
+        wanted = min(FIRST_ROUND, most)
+        while True:
             in_time, interrupted = self._walk(wanted, most, time_s)
             found = self._found(interrupted=interrupted)
             if interrupted:
@@ -224,9 +225,9 @@ class _Rounds:
             )
             if has_aim and reached:
                 return found
-            if not in_time:
-                break
-        return replace(found, complete=not has_aim)
+            if wanted >= most or not in_time:
+                return replace(found, complete=not has_aim)
+            wanted = min(2 * wanted, most)
 
     def _walk(self, wanted: int, most: int, time_s: float | None) -> tuple[bool, bool]:
         """Bring all to ``wanted`` paths of a batch; return whether in time, and whether stopped."""
@@ -260,15 +261,3 @@ class _Rounds:
             elapsed_s=time.perf_counter() - self.started,
             interrupted=interrupted,
         )
-
-
-def _doubled(first: int, last: int) -> list[int]:
-    """Return the paths that each round ends with: twice as many as the one before.
-
-    >>> _doubled(2, 9)
-    [2, 4, 8, 9]
-    """
-    steps = [first]
-    while steps[-1] < last:
-        steps.append(min(2 * steps[-1], last))
-    return steps

@@ -128,8 +128,7 @@ def reflector_table(one: ReflectorResults) -> Table:
     from rich.text import Text
 
     shown = Table(box=None, header_style="bold", pad_edge=False)
-    headings = ("H °", "V °", "observed at", "CIL", "2 σ", "required", "margin")
-    for heading in headings:
+    for heading in ("H °", "V °", "observed at", "CIL", "2 σ", "required", "margin"):
         shown.add_column(heading, justify="right", no_wrap=True)
     shown.add_column("")
     shown.add_column("")
@@ -138,5 +137,6 @@ def reflector_table(one: ReflectorResults) -> Table:
         if row.outcome is not None:
             mark = MARKS[row.outcome]
             word = Text(f"{mark.sign} {mark.word}", style=table.STYLES[row.outcome])
-        shown.add_row(*(Text(cell) for cell in row[: len(headings)]), word, Text(row.note))
+        cells = (row.h, row.v, row.observation, row.got, row.spread, row.required, row.margin)
+        shown.add_row(*map(Text, cells), word, Text(row.note))
     return shown
