@@ -159,7 +159,9 @@ def _named_rules(scene: Scene, rules: Sequence[str]) -> dict[str, str]:
         name = match[1].strip()
         if name not in names:
             near = nearest_name(name, names) or f"; it has {', '.join(names)}"
-            raise LamplitError(f"the lamp has no function {name[:60]!r}{near}", where="--rule")
+            raise LamplitError(
+                f"the lamp has no function or reflector {name[:60]!r}{near}", where="--rule"
+            )
         found[name] = match[2].strip()
     return found
 
