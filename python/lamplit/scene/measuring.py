@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 SMALLEST_RECEIVER_DEG, LARGEST_RECEIVER_DEG = 1.0 / 6.0, 1.0
 
 #: The full angle of the source and of the receiver that look at a retro-reflector, in degrees: 10′.
-REFLEX_DEG = 1.0 / 6.0
+REFLEX_DEG = 0.1667
 
 _Degrees = Annotated[float, Field(allow_inf_nan=False, gt=-80.0, lt=80.0)]
 #: Entrance angles V and H.
@@ -67,7 +67,7 @@ class Reflector(Table):
     observation_deg: Annotated[
         tuple[Observation, ...], Field(strict=False, min_length=1, max_length=100)
     ] = Field(
-        default=(1.0 / 3.0, 1.5),
+        default=(0.3333, 1.5),
         description="angles of the receiver above the light, where no rule says so",
     )
     source_deg: ReflexAperture = Field(
