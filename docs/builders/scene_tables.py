@@ -27,6 +27,7 @@ _SECTIONS: dict[str, dict[str, str]] = {
     "measure": {
         "MeasureSettings": "`[measure]`",
         "LampFunction": "`[[measure.functions]]`",
+        "Reflector": "`[[measure.reflectors]]`",
     },
     "ambient": {"Ambient": "`[ambient]`"},
     "background": {
@@ -111,6 +112,7 @@ _FORMS = {
     "TabulatedTransmittance": "[transmittance](#internal-transmittance)",
     "SoftBox": "soft box",
     "LampFunction": "function",
+    "Reflector": "reflector",
     "Radiator": "`{ source, luminance_cd_m2 }`",
     "CustomDisplay": "a table",
     "CosineDistribution": "`{ cosine_exponent }`",
@@ -193,7 +195,9 @@ def _array(node: Node) -> str:
     parts = node.get("prefixItems")
     if parts is None:
         noun = _values(node["items"])
-        return f"list of {noun}es" if noun.endswith("x") else f"list of {noun}s"
+        noun, comma, limits = noun.partition(", ")
+        ending = "es" if noun.endswith("x") else "" if noun.endswith("s") else "s"
+        return f"list of {noun}{ending}{comma}{limits}"
     if all(part.get("type") == "number" for part in parts):
         return f"{len(parts)} numbers"
     return f"{len(parts)} times {_values(parts[0])}"

@@ -249,7 +249,7 @@ def test_a_distance_is_metres_or_far(
         (["--distance", "near"], "'near' is no distance"),
         (["--distance", "-3"], "'-3' is no distance"),
         (["--rule", "un-r148/S9"], "no entry 'S9'"),
-        (["--rule", "stopp=un-r148/S1"], "no function 'stopp'; did you mean 'stop'?"),
+        (["--rule", "stopp=un-r148/S1"], "no function or reflector 'stopp'; did you mean 'stop'?"),
         (["--rule", "un-r148/S1?period=noon"], "no choice"),
         (["--rule", "un-r150/IA"], "retro-reflectors"),
     ],
@@ -327,5 +327,5 @@ def test_a_report_that_cannot_be_is_one_line(
 
 
 def test_an_unknown_function_of_a_rule_is_refused(lamp: Path) -> None:
-    with pytest.raises(LamplitError, match="no function 'fog'"):
+    with pytest.raises(LamplitError, match="no function or reflector 'fog'"):
         asked_functions(load_scene(lamp), rules=["fog=un-r148/F1"])

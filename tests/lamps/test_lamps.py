@@ -54,6 +54,7 @@ VARIANTS = [
     ("retro", {}),
     ("retro", {"triangles": 4_000, "pitch_mm": 6}),
     ("retro", {"aperture": "triangular", "squareness": 2.0}),
+    ("retro", {"pitch_mm": 10, "cube_error_arcmin": 60.0}),
     ("retro", {"aperture": "triangular", "pitch_mm": 1.5, "squareness": 8, "triangles": 200_000}),
 ]
 IDS = [f"{name}-{k}" for k, (name, _) in enumerate(VARIANTS)]
@@ -132,7 +133,7 @@ def test_the_mirror_sends_light_of_the_filament_straight_ahead(tmp_path: Path) -
 
 @pytest.mark.parametrize("aperture", ["hexagonal", "triangular"])
 def test_the_faces_of_a_cube_corner_meet_at_right_angles(aperture: str, tmp_path: Path) -> None:
-    settings = {"aperture": aperture, "triangles": 4_000}
+    settings = {"aperture": aperture, "triangles": 4_000, "cube_error_arcmin": 0.0}
     plate = meshes_of(write_lamp("retro", tmp_path, settings))["plate"]
     central = np.linalg.norm(plate.triangles_center[:, :2], axis=1) < 15.0
     slant = plate.face_normals[central & (plate.face_normals[:, 2] < 0.0)]
@@ -142,6 +143,48 @@ def test_the_faces_of_a_cube_corner_meet_at_right_angles(aperture: str, tmp_path
     products = np.abs(kinds @ kinds.T - np.eye(len(kinds)))
     right_angled = (products < 2e-3).sum(axis=1) - 1
     assert (right_angled >= 2).all()
+
+
+@pytest.mark.parametrize(("aperture", "pitch_mm"), [("hexagonal", 2.0), ("triangular", 3.5)])
+def test_faces_of_cube_corners_are_tilted_by_the_error_that_is_asked_for(
+    aperture: str, pitch_mm: float, tmp_path: Path
+) -> None:
+    settings = {"aperture": aperture, "pitch_mm": pitch_mm, "triangles": 9_000}
+    normals: list[np.ndarray] = []
+    for error in (0.0, 12.0):
+        scene = write_lamp(
+            "retro", tmp_path / f"{error:g}", settings | {"cube_error_arcmin": error}
+        )
+        plate = meshes_of(scene)["plate"]
+        central = (np.abs(plate.triangles_center[:, :2]) < (38.0, 20.0)).all(axis=1)
+        normals.append(plate.face_normals[central & (plate.face_normals[:, 2] < -0.3)])
+    true, tilted = normals
+    assert len(true) == len(tilted) > 1000
+    slant = np.abs(true[:, 2] + 1.0 / np.sqrt(3.0)) < 1e-3
+    tilts = 60.0 * np.degrees(np.linalg.norm(true - tilted, axis=1))[slant]
+    assert np.sqrt(np.mean(tilts**2)) == pytest.approx(12.0, rel=0.08)
+    assert len(np.unique(tilts.round(2))) > 100
+
+
+def test_errors_of_cube_corners_do_not_depend_on_how_finely_they_are_cut(tmp_path: Path) -> None:
+    heights: list[np.ndarray] = []
+    for triangles in (9_000, 90_000):
+        settings = {"triangles": triangles, "cube_error_arcmin": 10.0}
+        plate = meshes_of(write_lamp("retro", tmp_path / str(triangles), settings))["plate"]
+        central = np.linalg.norm(plate.vertices[:, :2], axis=1) < 15.0
+        heights.append(plate.vertices[central & (plate.vertices[:, 2] < -1.0)])
+    coarse, fine = heights
+    assert len(fine) > 3 * len(coarse) > 100
+    assert cKDTree(fine).query(coarse)[0].max() < 1e-5
+
+
+def test_a_reflector_names_the_rule_of_its_colour(tmp_path: Path) -> None:
+    rules = {"red": "red", "amber": "amber", "clear": "colourless", "smoke": None}
+    for colour, emits in rules.items():
+        scene = load_scene(write_lamp("retro", tmp_path / colour, {"colour": colour}))
+        assert scene.measure is not None
+        (reflector,) = scene.measure.reflectors
+        assert reflector.rule == (None if emits is None else f"un-r150/IA?emits={emits}")
 
 
 def test_a_collimator_makes_the_light_of_its_die_parallel() -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 OR MIT
-"""The functions of a lamp that are measured, each with its rule under the options that hold."""
+"""The functions and reflectors that are measured, each with its rule under its options."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lamplit.errors import LamplitError, nearest_name
-from lamplit.rules import GridNeed, Rule, find_rule
+from lamplit.rules import GridNeed, ReflexAngles, Rule, find_rule
 
 if TYPE_CHECKING:
     from lamplit.scene import Scene
@@ -41,17 +41,29 @@ class Asked:
     with_position: str | None = None
 
 
-def asked_functions(scene: Scene, *, rules: Sequence[str] = ()) -> tuple[Asked, ...]:
-    """Return the functions of ``scene``, or all its light as one.
+@dataclass(frozen=True)
+class AskedReflector:
+    """A retro-reflector to be measured."""
 
-    ``rules`` are RULE, for every function, or FUNCTION=RULE; they take the place of the scene's.
+    name: str
+    rule: Rule | None
+    angles: tuple[ReflexAngles, ...]
+    source_deg: float
+    receiver_deg: float
+
+
+def asked_functions(scene: Scene, *, rules: Sequence[str] = ()) -> tuple[Asked, ...]:
+    """Return the functions of ``scene``, or all its light as one if it has no reflectors either.
+
+    ``rules`` are RULE, for every function or reflector that it is about, or NAME=RULE; they take
+    the place of the scene's.
 
     Raises:
-        LamplitError: A rule, option or function is not known, or it measures no lamp.
+        LamplitError: A rule, option or function is not known, or a rule measures no lamp.
     """
     settings = scene.measure
     functions = () if settings is None else settings.functions
-    named = _named_rules(rules, [own.name for own in functions] or [ALL_LIGHT])
+    named = _named_rules(scene, rules)
     if functions:
         return tuple(
             Asked(
@@ -62,7 +74,34 @@ def asked_functions(scene: Scene, *, rules: Sequence[str] = ()) -> tuple[Asked, 
             )
             for own in functions
         )
+    if settings is not None and settings.reflectors:
+        return ()
     return (Asked(ALL_LIGHT, {}, _rule(scene, named.get(ALL_LIGHT), None)),)
+
+
+def asked_reflectors(scene: Scene, *, rules: Sequence[str] = ()) -> tuple[AskedReflector, ...]:
+    """Return the retro-reflectors of ``scene`` with the angles that their rules ask for.
+
+    Raises:
+        LamplitError: A rule, option or reflector is not known, or a rule is one for lamps.
+    """
+    named = _named_rules(scene, rules)
+    found: list[AskedReflector] = []
+    for own in () if scene.measure is None else scene.measure.reflectors:
+        text = named.get(own.name, own.rule)
+        rule = None if text is None else find_rule(text, root=scene.root)
+        if rule is not None and not rule.reflex():
+            raise LamplitError(
+                f"{rule.id} is a rule for lamps, and {own.name!r} is a retro-reflector",
+                file=scene.path,
+            )
+        angles = rule.reflex_angles() if rule is not None else tuple(
+            ReflexAngles(v, h, observation)
+            for observation in own.observation_deg
+            for v, h in own.entrance_deg
+        )  # fmt: skip
+        found.append(AskedReflector(own.name, rule, angles, own.source_deg, own.receiver_deg))
+    return tuple(found)
 
 
 def directions(functions: Sequence[Asked]) -> tuple[Array, tuple[Array, Array]]:
@@ -93,17 +132,36 @@ def _edges(ranges: Sequence[tuple[float, float]], cell: float) -> Array:
     return np.arange(first, last + 1, dtype=np.float64) * cell
 
 
-def _named_rules(rules: Sequence[str], names: Sequence[str]) -> dict[str, str]:
+def _named_rules(scene: Scene, rules: Sequence[str]) -> dict[str, str]:
+    """Return the rules by the functions and reflectors that they are named for, or are about."""
+    functions = [own.name for own in (scene.measure.functions if scene.measure else ())]
+    reflectors = [own.name for own in (scene.measure.reflectors if scene.measure else ())]
+    if not (functions or reflectors):
+        functions = [ALL_LIGHT]
+    names = [*functions, *reflectors]
     found: dict[str, str] = {}
     for text in rules:
         match = _FOR_FUNCTION.fullmatch(text.strip())
         if match is None:
-            found |= dict.fromkeys(names, text.strip())
+            rule = find_rule(text.strip(), root=scene.root)
+            about, others = (reflectors, "retro-reflectors") if rule.reflex() else (
+                functions, "lit functions",
+            )  # fmt: skip
+            if not about:
+                key = "reflectors" if rule.reflex() else "functions"
+                raise LamplitError(
+                    f"{rule.id} is a rule for {others}, and the scene has none; "
+                    f"add [[measure.{key}]] to it",
+                    where="--rule",
+                )
+            found |= dict.fromkeys(about, text.strip())
             continue
         name = match[1].strip()
         if name not in names:
             near = nearest_name(name, names) or f"; it has {', '.join(names)}"
-            raise LamplitError(f"the lamp has no function {name[:60]!r}{near}", where="--rule")
+            raise LamplitError(
+                f"the lamp has no function or reflector {name[:60]!r}{near}", where="--rule"
+            )
         found[name] = match[2].strip()
     return found
 
@@ -120,7 +178,7 @@ def _rule(scene: Scene, text: str | None, function: LampFunction | None) -> Rule
     if rule.reflex():
         raise LamplitError(
             f"{rule.id} is a rule for retro-reflectors, which shine by other light; "
-            "lamplit.rules.judge_reflex judges them",
+            "name it in [[measure.reflectors]]",
             file=scene.path,
         )
     if function is None:

@@ -22,10 +22,10 @@ from lamplit.cli.measuring import (
     UntilDecidedOption,
     Wanted,
     measured,
-    print_verdicts,
 )
 from lamplit.cli.options import OutputOption, SceneArgument, SeedOption, SetOption, ThreadsOption
 from lamplit.cli.overrides import command_line
+from lamplit.cli.verdicts import print_verdicts
 
 if TYPE_CHECKING:
     from lamplit.engine.measurement import Measurement
@@ -67,14 +67,17 @@ def measure(
     wanted = Wanted(scene, rule or (), distance, receiver, production, seed, set_ or ())
     prepare_output(output, (MEASUREMENT_FILE,))
     budget = Budget(paths, error, time, until_decided)
-    results, measurement, stop = measured(wanted, budget, threads=threads)
-    results = replace(results, command=command_line(sys.argv))
+    found = measured(wanted, budget, threads=threads)
+    results = replace(found.results, command=command_line(sys.argv))
     files = write_measurement(results, output)
     _tell(output, results, files)
-    if measurement.interrupted:
-        raise typer.Exit(stop.exit_code)
+    if found.interrupted:
+        raise typer.Exit(found.stop.exit_code)
     if cross_check:
-        _compare(measurement)
+        if found.measurement is None:
+            print("\nno function is lit, and so there is nothing to cross-check")
+        else:
+            _compare(found.measurement)
 
 
 def _tell(output: Path, results: Results, files: dict[str, str]) -> None:

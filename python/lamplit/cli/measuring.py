@@ -8,14 +8,14 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
 from lamplit.errors import LamplitError
 
 if TYPE_CHECKING:
-    from lamplit.cli.functions import Asked
+    from lamplit.cli.functions import Asked, AskedReflector
     from lamplit.cli.stopping import Stop
     from lamplit.engine.measurement import Measurement
     from lamplit.report.photometry.progress import MeasuringProgress
@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
 #: With --until-decided alone, no more paths than these: what lies on a limit is never decided.
 _MOST_UNDECIDED = 1 << 30
-#: In a log, a table of findings has this width at least: narrower ones break every line of it.
-_TABLE_WIDTH = 120
 #: What --distance says instead of a number.
 _FAR = "far"
 
@@ -97,7 +95,7 @@ class Budget:
     @property
     def most_paths(self) -> int | None:
         """The most paths to walk; None for no end but the time or the error."""
-        from lamplit.engine.measure import USUAL_PATHS
+        from lamplit.engine.measuring_run import USUAL_PATHS
 
         if self.paths is not None or self.error is not None or self.time_s is not None:
             return self.paths
@@ -148,28 +146,74 @@ class Wanted:
         return value
 
 
-def measured(
-    wanted: Wanted, budget: Budget, *, threads: int | None = None
-) -> tuple[Results, Measurement, Stop]:
-    """Measure what is ``wanted``; return what is shown, what was measured, and what stopped it.
+class Measured(NamedTuple):
+    """What is shown, what was measured of the lit lamp, if it was, and what stopped it."""
+
+    results: Results
+    measurement: Measurement | None
+    stop: Stop
+    #: Whether a signal ended it.
+    interrupted: bool
+
+
+def measured(wanted: Wanted, budget: Budget, *, threads: int | None = None) -> Measured:
+    """Measure what is ``wanted``: the lit functions, then each retro-reflector.
 
     Raises:
         LamplitError: The scene, a rule or an option cannot be used.
         typer.Exit: A signal stopped it before anything was done.
     """
-    from lamplit import engine
-    from lamplit.cli.functions import asked_functions, directions
+    from lamplit.cli.functions import asked_functions, asked_reflectors
+    from lamplit.cli.reflecting import measured_reflectors
     from lamplit.cli.stopping import stop_signals
     from lamplit.report.photometry.measured import results_of
-    from lamplit.report.photometry.progress import MeasuringProgress
+    from lamplit.report.photometry.reflected import with_reflectors
 
     scene = wanted.load()
     functions = asked_functions(scene, rules=wanted.rules)
-    _check(budget, functions)
+    reflectors = asked_reflectors(scene, rules=wanted.rules)
+    _check(budget, [*functions, *reflectors])
+    if budget.time_s is not None:
+        share = budget.time_s / (bool(functions) + len(reflectors))
+        budget = replace(budget, time_s=share)
+    results, measurement, interrupted = None, None, False
+    with stop_signals() as stop:
+        if functions:
+            measurement = _lit(scene, functions, wanted, budget, threads)
+            if measurement.paths > 0:
+                results = results_of(measurement, functions, production=wanted.production)
+            interrupted = measurement.interrupted
+        if reflectors and not interrupted:
+            shown, found = measured_reflectors(
+                scene, reflectors, budget, production=wanted.production, threads=threads
+            )
+            if found:
+                results = with_reflectors(results, shown, found)
+            interrupted = len(found) < len(reflectors) or found[-1].interrupted
+    if results is None:
+        print("stopped before the first path was done; nothing is written", file=sys.stderr)
+        raise typer.Exit(stop.exit_code)
+    if interrupted:
+        results = replace(results, complete=False)
+    return Measured(results, measurement, stop, interrupted)
+
+
+def _lit(
+    scene: Scene,
+    functions: Sequence[Asked],
+    wanted: Wanted,
+    budget: Budget,
+    threads: int | None,
+) -> Measurement:
+    """Measure the lit functions; what is done when a signal ends it."""
+    from lamplit import engine
+    from lamplit.cli.functions import directions
+    from lamplit.report.photometry.progress import MeasuringProgress
+
     spots, grid = directions(functions)
     progress = MeasuringProgress("Measuring", time_s=budget.time_s)
     rounds = _Rounds(functions, budget, progress, production=wanted.production)
-    with stop_signals() as stop, progress:
+    with progress:
         try:
             measurement = engine.measure(
                 scene,
@@ -185,14 +229,8 @@ def measured(
                 progress=progress,
             )
         except engine.MeasureInterrupted as stopped:
-            measurement = stopped.measurement
-    if measurement.paths == 0:
-        print("stopped before the first path was done; nothing is written", file=sys.stderr)
-        raise typer.Exit(stop.exit_code)
-    if not (rounds.have_an_aim or measurement.interrupted):
-        measurement = replace(measurement, complete=True)
-    results = results_of(measurement, functions, production=wanted.production)
-    return results, measurement, stop
+            return stopped.measurement
+    return measurement if rounds.have_an_aim else replace(measurement, complete=True)
 
 
 class _Rounds:
@@ -226,46 +264,14 @@ class _Rounds:
         return all(verdict.paths_factor is None for verdict in verdicts)
 
 
-def _check(budget: Budget, functions: Sequence[Asked]) -> None:
+def _check(budget: Budget, asked: Sequence[Asked | AskedReflector]) -> None:
     """Refuse to go on until what has no rule is decided.
 
     Raises:
         LamplitError: No function has a rule.
     """
-    if budget.until_decided and all(one.rule is None for one in functions):
+    if budget.until_decided and all(one.rule is None for one in asked):
         raise LamplitError(
             "no function has a rule that could be decided; name one with --rule",
             where="--until-decided",
         )
-
-
-def print_verdicts(results: Results) -> None:
-    """Print the table of each function, and below all of them the verdicts."""
-    from rich.console import Console
-    from rich.markup import escape
-    from rich.text import Text
-
-    from lamplit.report.photometry.style import MARKS
-    from lamplit.report.photometry.table import STYLES, findings_table, in_words, spots_table
-
-    console = Console(highlight=False, soft_wrap=True)
-    if not console.is_terminal:
-        console.width = max(console.width, _TABLE_WIDTH)
-    for one in results.functions:
-        console.print(f"\n[bold]{escape(one.name)}[/bold]", end="")
-        if one.verdict is None:
-            console.print(": no rule, nothing is judged\n")
-            console.print(spots_table(one.observed))
-            continue
-        chosen = "" if not one.verdict.production else ", conformity of production"
-        console.print(f": {escape(one.verdict.title)}, {escape(one.verdict.rule)}{chosen}\n")
-        console.print(findings_table(one))
-    console.print()
-    for one in results.functions:
-        if one.verdict is not None:
-            mark = MARKS[one.verdict.outcome]
-            word = Text(f"{mark.sign} {mark.word:10}", style=STYLES[one.verdict.outcome])
-            console.print(word, Text(f"{one.name}: {in_words(one.verdict)}"))
-    notices = [note for one in results.functions if one.verdict for note in one.verdict.notices]
-    for notice in dict.fromkeys([*results.notices, *notices]):
-        console.print(f"[cyan]notice: {escape(notice)}[/cyan]")

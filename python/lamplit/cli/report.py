@@ -85,7 +85,8 @@ def report(
         from lamplit.cli.measuring import Wanted, measured
 
         wanted = Wanted(place, rule or (), distance, receiver, production, seed, set_ or ())
-        results, _, stop = measured(wanted, budget, threads=threads)
+        found = measured(wanted, budget, threads=threads)
+        results, stop = found.results, found.stop
         results = replace(results, command=command_line(sys.argv))
     write_bytes(output, render_page(results, shown).encode())
     _tell(results, output)
@@ -113,7 +114,7 @@ def _refuse(budget: Budget, *, given: bool) -> None:
 
 
 def _tell(results: Results, output: Path) -> None:
-    from lamplit.cli.measuring import print_verdicts
+    from lamplit.cli.verdicts import print_verdicts
 
     print_verdicts(results)
     print(f"\nOpen {output}")

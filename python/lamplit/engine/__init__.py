@@ -10,10 +10,12 @@ from lamplit.engine.image import Image
 from lamplit.engine.ledger import Ledger
 from lamplit.engine.light_sources import BeamLight, RayLight
 from lamplit.engine.lumens import LumenLedger
-from lamplit.engine.measure import MeasureInterrupted, measure
+from lamplit.engine.measure import measure
 from lamplit.engine.measurement import Measurement
+from lamplit.engine.measuring_run import MeasureInterrupted
 from lamplit.engine.plan import FIRST_ROUND_SAMPLES, Plan, plan
 from lamplit.engine.receivers import Goniometer, Plane
+from lamplit.engine.reflectors import ReflexInterrupted, ReflexMeasurement, measure_reflector
 from lamplit.engine.render import RenderInterrupted, render
 
 __all__ = [
@@ -31,9 +33,12 @@ __all__ = [
     "Plan",
     "Plane",
     "RayLight",
+    "ReflexInterrupted",
+    "ReflexMeasurement",
     "RenderInterrupted",
     "compare",
     "measure",
+    "measure_reflector",
     "plan",
     "render",
 ]

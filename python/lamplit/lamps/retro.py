@@ -2,7 +2,8 @@
 """A reflex reflector: one red plate, flat in front, its back full of cube corners.
 
 The front's middle lies in the origin; +z points at the observer. The plate's cube corners
-reflect totally, so nothing but air is behind them; the housing keeps its distance.
+reflect totally, so nothing but air is behind them; the housing keeps its distance. Perfect cubes
+would send all light back into its source; a receiver beside it lives by the faces' small errors.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from lamplit.lamps.recipe import (
     LampParameters,
     LensColour,
     Table,
+    TomlValue,
     Triangles,
     lens_material,
     mesh_object,
@@ -47,6 +49,15 @@ class Parameters(LampParameters):
             ge=0.5, le=15.0, description="hexagonal: between tips; triangular: side of triangles"
         ),
     ] = 4.0
+    cube_error_arcmin: Annotated[
+        float,
+        Field(
+            ge=0.0,
+            le=60.0,
+            description="RMS tilt of the cubes' faces from their true place; 0 sends all light "
+            "straight back",
+        ),
+    ] = 7.5
     plate_thickness_mm: Annotated[
         float, Field(ge=1.0, le=6.0, description="from the front to the nearest groove behind")
     ] = 2.0
@@ -95,7 +106,9 @@ def _plate(p: Parameters, cover: Cover) -> tuple[Solid, float]:
     around = 3.2 * cover.optics.perimeter_mm / p.pitch_mm * divisions
     total = 2.0 * faces + 2.0 * around * (2.7 * rolls + 5.0)
     best = int(np.argmin(np.abs(np.log(total / (0.85 * p.triangles)))))
-    patch = cube_corner_patch(cover.optics, p.aperture, p.pitch_mm, int(divisions[best]))
+    patch = cube_corner_patch(
+        cover.optics, p.aperture, p.pitch_mm, int(divisions[best]), p.cube_error_arcmin
+    )
     roll = int(rolls[best])
     depth = p.plate_thickness_mm + cover.pedestal + float(patch.height.max())
     return cover.solid(patch, patch.height, roll), depth
@@ -126,4 +139,13 @@ def _tables(p: Parameters, cover: Cover, housing: Housing) -> list[Table]:
         mesh_object("plate", "plate", comment="flat faces: cube corners must not be smoothed"),
         mesh_object("housing", "black-abs", crease_deg=40.0),
         studio.table_top(ground, "black-abs", front_mm=1.6 * size),
+        *studio.laboratory(reflectors=[_reflector(p)]),
     ]
+
+
+def _reflector(p: Parameters) -> dict[str, TomlValue]:
+    """Return what the plate has to meet; no rule knows smoke."""
+    emits = {"red": "red", "amber": "amber", "clear": "colourless"}
+    if p.colour not in emits:
+        return {"name": "reflector"}
+    return {"name": "reflector", "rule": f"un-r150/IA?emits={emits[p.colour]}"}

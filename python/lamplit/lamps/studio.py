@@ -134,12 +134,15 @@ def table_top(y_mm: float, material: str, *, front_mm: float) -> Table:
     return Table("objects", {**values, **more}, many=True)
 
 
-def laboratory(functions: Sequence[dict[str, TomlValue]]) -> list[Table]:
+def laboratory(
+    functions: Sequence[dict[str, TomlValue]] = (), reflectors: Sequence[dict[str, TomlValue]] = ()
+) -> list[Table]:
     """Return how the lamp is measured: along its axis, without the table, from far away."""
     measure = {"axis": [0.0, 0.0, 1.0], "leave_out": ["table"]}
     return [
         Table("measure", measure, "photometry: the axis points to the observer"),
         *(Table("measure.functions", own, many=True) for own in functions),
+        *(Table("measure.reflectors", own, many=True) for own in reflectors),
     ]
 
 

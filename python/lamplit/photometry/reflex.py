@@ -6,6 +6,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 
+def arc(degrees: float) -> str:
+    """Return an angle of observation as regulations write it, to the tenth of a minute.
+
+    >>> arc(1 / 3), arc(1.5), arc(2.0), arc(0.025)
+    ('20′', '1°30′', '2°', '1.5′')
+    """
+    minutes = round(60.0 * degrees, 1)
+    whole, rest = divmod(minutes, 60.0)
+    return f"{whole:g}°" * bool(whole) + f"{rest:g}′" * bool(rest or not whole)
+
+
 @dataclass(frozen=True)
 class ReflexReading:
     """The coefficient of luminous intensity (CIL) of a retro-reflector.

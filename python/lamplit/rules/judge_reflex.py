@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from lamplit.errors import RuleError
-from lamplit.photometry.reflex import ReflexReading
+from lamplit.photometry.reflex import ReflexReading, arc
 from lamplit.rules.case import production_of
 from lamplit.rules.choices import chosen_number
 from lamplit.rules.decide import Source, finding, least_trusted
@@ -53,7 +53,7 @@ def _findings(
     for (v, h), minimum in zip(own.entrance_deg, own.minimum, strict=True):
         reading = _reading(rule, readings, v, h, own.observation_deg)
         yield finding(
-            f"CIL at observation {own.observation_deg:g}°",
+            f"CIL at observation {arc(own.observation_deg)}",
             Source(own.clause, trust),
             sense="min",
             required=share * factor * minimum,

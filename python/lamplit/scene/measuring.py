@@ -18,6 +18,15 @@ if TYPE_CHECKING:
 #: The full angles that a regulation's receiver subtends, in degrees: 10′ to 1°.
 SMALLEST_RECEIVER_DEG, LARGEST_RECEIVER_DEG = 1.0 / 6.0, 1.0
 
+#: The full angle of the source and of the receiver that look at a retro-reflector, in degrees: 10′.
+REFLEX_DEG = 0.1667
+
+_Degrees = Annotated[float, Field(allow_inf_nan=False, gt=-80.0, lt=80.0)]
+#: Entrance angles V and H.
+Entrance = Annotated[tuple[_Degrees, _Degrees], Field(strict=False)]
+Observation = Annotated[float, Field(allow_inf_nan=False, ge=0.0, le=10.0)]
+ReflexAperture = Annotated[float, Field(allow_inf_nan=False, ge=0.01, le=1.0)]
+
 
 class LampFunction(Table):
     """What the lamp does when some of its light groups are lit: stop, position, indicator."""
@@ -44,6 +53,31 @@ class LampFunction(Table):
     )
 
 
+class Reflector(Table):
+    """A retro-reflector, lit by illuminant A from each entrance direction; all else is dark."""
+
+    name: Name = Field(description="such as reflector")
+    rule: Annotated[str, Field(max_length=300)] | None = Field(
+        default=None, description="what it has to meet: RULES/ENTRY, such as un-r150/IA"
+    )
+    entrance_deg: Annotated[tuple[Entrance, ...], Field(strict=False, max_length=1000)] = Field(
+        default=((0.0, 0.0),),
+        description="V and H of the light, where no rule says so",
+    )
+    observation_deg: Annotated[
+        tuple[Observation, ...], Field(strict=False, min_length=1, max_length=100)
+    ] = Field(
+        default=(0.3333, 1.5),
+        description="angles of the receiver above the light, where no rule says so",
+    )
+    source_deg: ReflexAperture = Field(
+        default=REFLEX_DEG, description="full angle that the source subtends"
+    )
+    receiver_deg: ReflexAperture = Field(
+        default=REFLEX_DEG, description="full angle that the receiver subtends"
+    )
+
+
 class MeasureSettings(Table):
     """How the lamp is measured: directions (H, V) are those of CONVENTIONS.md about its axis."""
 
@@ -63,7 +97,11 @@ class MeasureSettings(Table):
         default=(), description="objects of the picture that are not in the laboratory"
     )
     functions: Annotated[tuple[LampFunction, ...], Field(strict=False, max_length=100)] = Field(
-        default=(), description="what the lamp does; left out: all light together"
+        default=(),
+        description="what the lamp does; left out: all light together, unless it has reflectors",
+    )
+    reflectors: Annotated[tuple[Reflector, ...], Field(strict=False, max_length=100)] = Field(
+        default=(), description="retro-reflectors, measured in light from outside"
     )
 
     @model_validator(mode="after")
@@ -91,6 +129,13 @@ def check_measuring(scene: Scene) -> None:
     for at, name in enumerate(settings.leave_out):
         _known("object", name, objects, f"measure.leave_out[{at}]")
     functions = [function.name for function in settings.functions]
+    names = [*functions, *(reflector.name for reflector in settings.reflectors)]
+    for at, reflector in enumerate(settings.reflectors):
+        if reflector.name in names[: len(functions) + at]:
+            raise SceneError(
+                f"another one is called {reflector.name!r} too; choose another name",
+                where=f"measure.reflectors[{at}].name",
+            )
     groups = set(light_groups(scene))
     for at, function in enumerate(settings.functions):
         where = f"measure.functions[{at}]"

@@ -28,6 +28,10 @@ SPOTS_HEADER = (
     "function", "H_deg", "V_deg", "intensity_cd", "standard_error_cd", "X_cd", "Z_cd",
     "x", "y", "standard_error_x", "standard_error_y", "correlation_xy",
 )  # fmt: skip
+REFLEX_HEADER = (
+    "reflector", "entrance_V_deg", "entrance_H_deg", "observation_deg", "CIL_mcd_per_lx",
+    "standard_error_mcd_per_lx",
+)  # fmt: skip
 CANDELA_HEADER = (
     "function", "H_deg", "V_deg", "intensity_cd", "standard_error_cd", "X_cd", "Z_cd",
 )  # fmt: skip
@@ -37,14 +41,13 @@ def points_csv(results: Results) -> bytes:
     """Return a line for each finding: what was required, and got, by which clause."""
     rows = [
         (
-            one.name, one.verdict.rule, found.requirement, found.clause, found.trust,
+            name, verdict.rule, found.requirement, found.clause, found.trust,
             found.h_deg, found.v_deg, found.sense, found.required, found.got,
             found.standard_error, found.unit, found.margin_percent, found.outcome,
             found.paths_factor, found.remark,
         )
-        for one in results.functions
-        if one.verdict is not None
-        for found in one.verdict.findings
+        for name, verdict in results.verdicts()
+        for found in verdict.findings
     ]  # fmt: skip
     return _written(POINTS_HEADER, rows)
 
@@ -52,6 +55,12 @@ def points_csv(results: Results) -> bytes:
 def spots_csv(results: Results) -> bytes:
     """Return a line for each direction that was measured: intensity and chromaticity."""
     return _written(SPOTS_HEADER, (row for one in results.functions for row in _spots(one)))
+
+
+def reflex_csv(results: Results) -> bytes:
+    """Return a line for each pair of angles at which a retro-reflector was measured."""
+    rows = [(one.name, *vars(own).values()) for one in results.reflectors for own in one.readings]
+    return _written(REFLEX_HEADER, rows)
 
 
 def candela_csv(results: Results) -> bytes:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from lamplit.photometry.measured import from_hv
 from lamplit.photometry.writing import FileLabels, write_ies, write_ldt
 from lamplit.report.atomic import prepare_output, write_bytes
-from lamplit.report.photometry.csv_files import candela_csv, points_csv, spots_csv
+from lamplit.report.photometry.csv_files import candela_csv, points_csv, reflex_csv, spots_csv
 from lamplit.report.photometry.isocandela import middles
 from lamplit.report.photometry.kept import CANDELA_FILE, MEASUREMENT_FILE, measurement_json
 from lamplit.report.photometry.plots import KINDS, draw_plots, stems
@@ -17,7 +17,7 @@ from lamplit.report.photometry.plots import KINDS, draw_plots, stems
 if TYPE_CHECKING:
     from lamplit.report.photometry.results import FunctionResults, Results
 
-POINTS_FILE, SPOTS_FILE = "points.csv", "spots.csv"
+POINTS_FILE, SPOTS_FILE, REFLEX_FILE = "points.csv", "spots.csv", "reflex.csv"
 
 
 def write_measurement(results: Results, directory: Path) -> dict[str, str]:
@@ -29,15 +29,20 @@ def write_measurement(results: Results, directory: Path) -> dict[str, str]:
         OutputError: The folder or a file in it cannot be written.
         PhotometryError: The grid of a function cannot be said in an IES or EULUMDAT file.
     """
-    prepare_output(directory, (POINTS_FILE, SPOTS_FILE, CANDELA_FILE, MEASUREMENT_FILE))
+    files = (POINTS_FILE, SPOTS_FILE, CANDELA_FILE, REFLEX_FILE, MEASUREMENT_FILE)
+    prepare_output(directory, files)
     written: dict[str, str] = {}
     if results.outcome is not None:
         write_bytes(directory / POINTS_FILE, points_csv(results))
         written[POINTS_FILE] = "every requirement: required, got, standard error, outcome"
-    write_bytes(directory / SPOTS_FILE, spots_csv(results))
-    written[SPOTS_FILE] = "intensity and chromaticity in the directions of the test points"
-    write_bytes(directory / CANDELA_FILE, candela_csv(results))
-    written[CANDELA_FILE] = "intensity over the grid of H and V"
+    if results.functions:
+        write_bytes(directory / SPOTS_FILE, spots_csv(results))
+        written[SPOTS_FILE] = "intensity and chromaticity in the directions of the test points"
+        write_bytes(directory / CANDELA_FILE, candela_csv(results))
+        written[CANDELA_FILE] = "intensity over the grid of H and V"
+    if results.reflectors:
+        write_bytes(directory / REFLEX_FILE, reflex_csv(results))
+        written[REFLEX_FILE] = "what reflectors send back, by entrance and observation angle"
     for one, stem in zip(results.functions, stems(results), strict=True):
         written |= _write_photometric_files(results, one, directory, stem)
     for plot in draw_plots(results):

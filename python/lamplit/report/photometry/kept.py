@@ -6,21 +6,28 @@ The grids of intensity are beside it in ``candela.csv``.
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import Field, ValidationError
 
 from lamplit.errors import LamplitError
 from lamplit.photometry.observed import Observed
 from lamplit.report.photometry import results as shown
 from lamplit.report.photometry.csv_files import read_grid
 from lamplit.report.photometry.isocandela import brightest
-from lamplit.report.photometry.table import in_words
-from lamplit.rules.verdict import Finding, Outcome, Verdict
+from lamplit.report.photometry.kept_verdict import (
+    Kept,
+    KeptReflector,
+    KeptVerdict,
+    kept_reflector,
+    kept_verdict,
+    reflector_of,
+    verdict_of,
+)
+from lamplit.rules.verdict import Outcome
 
 Array = NDArray[np.float64]
 
@@ -32,11 +39,7 @@ Triple = tuple[float, float, float]
 Four = tuple[float, float, float, float]
 
 
-class _Kept(BaseModel):
-    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
-
-
-class KeptSpot(_Kept):
+class KeptSpot(Kept):
     """A measured direction.
 
     The chromaticity is null where no light came, its standard error where too little did.
@@ -52,7 +55,7 @@ class KeptSpot(_Kept):
     chromaticity_standard_error: Pair | None
 
 
-class KeptGrid(_Kept):
+class KeptGrid(Kept):
     """Borders of the cells whose intensities are in ``candela.csv``."""
 
     h_edges_deg: list[float] = Field(min_length=2)
@@ -62,47 +65,14 @@ class KeptGrid(_Kept):
     brightest_v_deg: float
 
 
-class KeptFinding(_Kept):
-    """See `lamplit.rules.Finding`; ``paths_factor`` is null too where no number would do."""
-
-    requirement: str
-    clause: str
-    trust: str
-    h_deg: float | None
-    v_deg: float | None
-    sense: Literal["min", "max"] | None
-    required: float | None
-    got: float
-    standard_error: float
-    unit: str
-    margin_percent: float | None
-    outcome: Outcome
-    paths_factor: float | None
-    remark: str
-
-
-class KeptVerdict(_Kept):
-    """See `lamplit.rules.Verdict`; ``decided_by`` says its worst finding in words."""
-
-    rule: str
-    title: str
-    outcome: Outcome
-    count: dict[Outcome, int]
-    decided_by: str
-    findings: list[KeptFinding]
-    options: dict[str, str]
-    notices: list[str]
-    production: bool
-
-
-class KeptRegion(_Kept):
+class KeptRegion(Kept):
     """A legal region of colour."""
 
     name: str
     outline_xy: list[Pair] = Field(min_length=3)
 
 
-class KeptSpectrum(_Kept):
+class KeptSpectrum(Kept):
     """A spectrum as numbers."""
 
     name: str
@@ -112,7 +82,7 @@ class KeptSpectrum(_Kept):
     values: list[float]
 
 
-class KeptFunction(_Kept):
+class KeptFunction(Kept):
     """One function of the lamp."""
 
     name: str
@@ -125,7 +95,7 @@ class KeptFunction(_Kept):
     spectrum: KeptSpectrum | None
 
 
-class KeptEnergy(_Kept):
+class KeptEnergy(Kept):
     """Where the flux of the sources went, in lm; ``gap_lm`` is what rounding leaves."""
 
     emitted_lm: dict[str, float]
@@ -137,7 +107,7 @@ class KeptEnergy(_Kept):
     gap_lm: float
 
 
-class KeptResults(_Kept):
+class KeptResults(Kept):
     """The file as a whole."""
 
     lamplit_measurement: Literal[1]
@@ -155,6 +125,7 @@ class KeptResults(_Kept):
     functions: list[KeptFunction]
     energy: KeptEnergy | None
     spectra: list[KeptSpectrum]
+    reflectors: list[KeptReflector] = Field(default_factory=list[KeptReflector])
 
 
 def measurement_json(results: shown.Results) -> bytes:
@@ -180,6 +151,7 @@ def measurement_json(results: shown.Results) -> bytes:
             chance_lm=energy.chance_lm, gap_lm=energy.gap_lm,
         ),
         spectra=[_kept_spectrum(one) for one in results.spectra],
+        reflectors=[kept_reflector(one) for one in results.reflectors],
     )  # fmt: skip
     return (kept.model_dump_json(indent=2) + "\n").encode()
 
@@ -210,7 +182,7 @@ def read_results(directory: Path) -> shown.Results:
         one.name: (len(one.grid.v_edges_deg) - 1, len(one.grid.h_edges_deg) - 1)
         for one in kept.functions
     }
-    grids = read_grid(directory / CANDELA_FILE, shapes)
+    grids = read_grid(directory / CANDELA_FILE, shapes) if shapes else {}
     energy = kept.energy
     return shown.Results(
         scene=kept.scene,
@@ -228,6 +200,7 @@ def read_results(directory: Path) -> shown.Results:
         elapsed_s=kept.elapsed_s,
         complete=kept.complete,
         command=kept.command,
+        reflectors=tuple(reflector_of(one) for one in kept.reflectors),
     )  # fmt: skip
 
 
@@ -237,7 +210,7 @@ def _kept_function(one: shown.FunctionResults) -> KeptFunction:
     return KeptFunction(
         name=one.name,
         paths=seen.paths,
-        verdict=None if one.verdict is None else _kept_verdict(one.verdict),
+        verdict=None if one.verdict is None else kept_verdict(one.verdict),
         spots=_kept_spots(seen),
         grid=KeptGrid(
             h_edges_deg=seen.grid_h_edges_deg.tolist(),
@@ -268,27 +241,6 @@ def _kept_spots(seen: Observed) -> list[KeptSpot]:
         )
         for at in range(len(seen.spot_h_deg))
     ]  # fmt: skip
-
-
-def _kept_verdict(verdict: Verdict) -> KeptVerdict:
-    return KeptVerdict(
-        rule=verdict.rule,
-        title=verdict.title,
-        outcome=verdict.outcome,
-        count=shown.tally(verdict),
-        decided_by=in_words(verdict),
-        findings=[KeptFinding(**_finite(vars(finding))) for finding in verdict.findings],
-        options=dict(verdict.options),
-        notices=list(verdict.notices),
-        production=verdict.production,
-    )
-
-
-def _finite(values: dict[str, Any]) -> dict[str, Any]:
-    """Put None where a number may be missing and is infinite."""
-    open_ended = ("paths_factor", "margin_percent")
-    endless = [name for name in open_ended if not math.isfinite(values[name] or 0.0)]
-    return values | dict.fromkeys(endless)
 
 
 def _kept_spectrum(one: shown.Spectrum) -> KeptSpectrum:
@@ -324,12 +276,7 @@ def _function(one: KeptFunction, grid_xyz: Array, grid_error: Array) -> shown.Fu
     verdict = one.verdict
     return shown.FunctionResults(
         observed,
-        None if verdict is None else Verdict(
-            rule=verdict.rule, title=verdict.title, function=one.name,
-            findings=tuple(Finding(**vars(found)) for found in verdict.findings),
-            options=tuple(verdict.options.items()), notices=tuple(verdict.notices),
-            production=verdict.production,
-        ),
+        None if verdict is None else verdict_of(verdict, one.name),
         None if region is None else shown.ColourRegion(region.name, np.array(region.outline_xy)),
         tuple(one.fields_deg),
         None if one.spectrum is None else _spectrum(one.spectrum),

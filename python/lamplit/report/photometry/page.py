@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from lamplit.errors import LamplitError
-from lamplit.report.photometry import table
+from lamplit.report.photometry import reflected, table
 from lamplit.report.photometry.plots import Plot, draw_plots
 from lamplit.report.photometry.results import tally
 from lamplit.report.photometry.style import MARKS, cd, spread
 
 if TYPE_CHECKING:
-    from lamplit.report.photometry.results import FunctionResults, Results
+    from lamplit.report.photometry.results import FunctionResults, ReflectorResults, Results
     from lamplit.rules.verdict import Finding, Verdict
 
 #: What the marks of a rule's figures mean.
@@ -88,6 +88,7 @@ def render_page(results: Results, pictures: Iterable[Picture] = ()) -> str:
         results=results,
         overall=None if results.outcome is None else MARKS[results.outcome],
         functions=[_function(one, plots) for one in results.functions],
+        reflectors=[_reflector(one) for one in results.reflectors],
         pictures=[(one.caption, _source(one.content)) for one in pictures],
         lamp_plots={plot.kind: _source(plot.content) for plot in plots if plot.function is None},
         energy=_energy_rows(results),
@@ -111,15 +112,33 @@ def _function(one: FunctionResults, plots: list[Plot]) -> dict[str, Any]:
         "spots": [] if verdict else _spots(one),
     }
     if verdict is not None:
-        facts |= {
-            "verdict": verdict,
-            "mark": MARKS[verdict.outcome],
-            "decided_by": table.in_words(verdict),
-            "tally": [(MARKS[name], count) for name, count in tally(verdict).items() if count],
-            "rows": [_row(finding, count) for finding, count in _ordered(verdict, one)],
-            "chosen": ", ".join(f"{name} {choice}" for name, choice in verdict.options),
-        }
+        facts |= _judged(verdict)
+        facts["rows"] = [_row(finding, count) for finding, count in _ordered(verdict, one)]
     return facts
+
+
+def _judged(verdict: Verdict) -> dict[str, Any]:
+    return {
+        "verdict": verdict,
+        "mark": MARKS[verdict.outcome],
+        "decided_by": table.in_words(verdict),
+        "tally": [(MARKS[name], count) for name, count in tally(verdict).items() if count],
+        "chosen": ", ".join(f"{name} {choice}" for name, choice in verdict.options),
+    }
+
+
+def _reflector(one: ReflectorResults) -> dict[str, Any]:
+    shown = reflected.rows(one)
+    first = shown[0]
+    facts: dict[str, Any] = {
+        "name": one.name,
+        "on_axis": {
+            f"V {first.v}, H {first.h}, {first.observation}": f"{first.got} {first.spread}"
+        },
+        "verdict": None,
+        "rows": [(row, None if row.outcome is None else MARKS[row.outcome]) for row in shown],
+    }
+    return facts if one.verdict is None else facts | _judged(one.verdict)
 
 
 def _ordered(verdict: Verdict, one: FunctionResults) -> list[tuple[Finding, int]]:
@@ -201,8 +220,8 @@ def _provenance(results: Results) -> Mapping[str, str]:
 def _trust(results: Results) -> list[tuple[str, str, int]]:
     """Return each mark of trust that occurs, what it means, and how many findings carry it."""
     counts: dict[str, int] = {}
-    for one in results.functions:
-        for finding in () if one.verdict is None else one.verdict.findings:
+    for _, verdict in results.verdicts():
+        for finding in verdict.findings:
             counts[finding.trust] = counts.get(finding.trust, 0) + 1
     return [
         (mark, TRUST.get(mark, "not explained by the rule file"), n) for mark, n in counts.items()

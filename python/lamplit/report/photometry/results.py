@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lamplit.photometry.observed import Observed
+from lamplit.photometry.reflex import ReflexReading
 from lamplit.rules.verdict import Finding, Outcome, Verdict, worst
 
 Array = NDArray[np.float64]
@@ -107,6 +108,17 @@ class FunctionResults:
 
 
 @dataclass(frozen=True, eq=False)
+class ReflectorResults:
+    """One retro-reflector: its coefficients of luminous intensity, and what its rule says."""
+
+    name: str
+    readings: tuple[ReflexReading, ...]
+    paths: int
+    #: None of a reflector that has no rule.
+    verdict: Verdict | None = None
+
+
+@dataclass(frozen=True, eq=False)
 class Results:
     """All that a measurement says, and all that makes it again."""
 
@@ -125,14 +137,18 @@ class Results:
     elapsed_s: float = 0.0
     complete: bool = True
     command: str = ""
+    reflectors: tuple[ReflectorResults, ...] = ()
 
     @property
     def outcome(self) -> Outcome | None:
-        """The worst of all functions' outcomes; None where no function has a rule."""
-        found: list[Outcome] = [
-            one.verdict.outcome for one in self.functions if one.verdict is not None
-        ]
+        """The worst of all outcomes; None where no function or reflector has a rule."""
+        found: list[Outcome] = [verdict.outcome for _, verdict in self.verdicts()]
         return worst(found) if found else None
+
+    def verdicts(self) -> list[tuple[str, Verdict]]:
+        """Return the name and the verdict of each function and reflector that has a rule."""
+        named = [*self.functions, *self.reflectors]
+        return [(one.name, one.verdict) for one in named if one.verdict is not None]
 
 
 def worst_finding(findings: Iterable[Finding]) -> Finding | None:
