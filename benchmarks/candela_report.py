@@ -31,6 +31,12 @@ class Round:
     wall_s: Array
     paths: float = 0.0
 
+    def kept(self) -> dict[str, Any]:
+        """Return it as plain values, four digits each."""
+        arrays = ("cd", "sigma", "core_s", "wall_s")
+        own = {name: [float(f"{x:.4g}") for x in getattr(self, name)] for name in arrays}
+        return {**own, "paths": self.paths}
+
 
 def summary(spots: Array, rounds: dict[str, list[Round]]) -> dict[str, Any]:
     """Return intensities, relative standard errors and times to 1 % of all programs.
@@ -42,9 +48,10 @@ def summary(spots: Array, rounds: dict[str, list[Round]]) -> dict[str, Any]:
     names, group = np.unique(mirrored, axis=0, return_inverse=True)
     group = group.reshape(-1)
     told = {name: _together(done) for name, done in rounds.items()}
-    walks = [name for name in told if name != _AT_ONCE]
-    precision = {name: 1.0 / told[name][1] for name in walks}
-    best = sum(precision[n] * told[n][0] for n in walks) / sum(precision.values())
+    # By pooled variances: a point's own would be small where its own mean is small by chance.
+    weights = {name: 1.0 / _mean(told[name][1], group) for name in told if name != _AT_ONCE}
+    weighted = np.sum([weight * told[name][0] for name, weight in weights.items()], axis=0)
+    best = weighted / np.sum(list(weights.values()), axis=0)
     reference = _mean(best, group)
     programs: dict[str, Any] = {}
     for name, done in rounds.items():
@@ -130,7 +137,7 @@ def as_markdown(found: dict[str, Any]) -> str:
         "repetitions, pooled over points that mirror each other, and the time to 1 % follows from",
         "it by σ ∝ 1/√time.",
         "",
-        "| program | core s spent | median σ | worst σ | core s to 1 % everywhere | Mitsuba's/own |",
+        "| program | core s spent | median σ | worst σ | core s to 1 % | Mitsuba's over it |",
         "|---|---|---|---|---|---|",
     ]
     for name, own in programs.items():

@@ -97,6 +97,7 @@ def receiver(gonio: Goniometer, direction: Array, corners: Array) -> tuple[dict[
     eye = centre + direction * distance
     radius = distance * np.sin(np.radians(gonio.receiver_deg) / 2.0)
     forward, low, high = -direction, np.zeros(2), np.zeros(2)
+    frame: Array = np.eye(4)
     # Turned once to the middle of what it sees, by some milliradians.
     for _ in range(2):
         left = np.cross(gonio.up, forward)
@@ -110,7 +111,6 @@ def receiver(gonio: Goniometer, direction: Array, corners: Array) -> tuple[dict[
         low = np.array([(x - blur).min(), (y - blur).min()])
         high = np.array([(x + blur).max(), (y + blur).max()])
         middle = 0.5 * (low + high)
-        frame = np.eye(4)
         frame[:3] = np.stack([left, up, forward, eye], axis=1)
         ahead = forward * distance + left * middle[0] + up * middle[1]
         forward = ahead / np.linalg.norm(ahead)
