@@ -135,7 +135,8 @@ def as_markdown(found: dict[str, Any]) -> str:
         "the eye, ours and Mitsuba's `volpathmis`, are made for each point: their times add up.",
         "Times are the processor's, of all threads, measured in turn; σ is that of independent",
         "repetitions, pooled over points that mirror each other, and the time to 1 % follows from",
-        "it by σ ∝ 1/√time.",
+        "it by σ ∝ 1/√time. Where few light paths arrive, σ itself is rough: at the weakest points of",
+        "the walk from the light, its time may be off by a factor of two.",
         "",
         "| program | core s spent | median σ | worst σ | core s to 1 % | Mitsuba's over it |",
         "|---|---|---|---|---|---|",
@@ -188,10 +189,8 @@ def as_markdown(found: dict[str, Any]) -> str:
 
 
 def _seconds(value: float) -> str:
-    if value >= 1000.0:
-        digits = math.floor(math.log10(value)) - 1
-        return f"{round(value, -digits):,.0f}".replace(",", " ")
-    return f"{value:.2g}"
+    digits = 1 - math.floor(math.log10(value))
+    return f"{round(value, digits):,.{max(digits, 0)}f}".replace(",", " ")
 
 
 def draw(found: dict[str, Any], path: Path) -> None:
