@@ -5,6 +5,7 @@ Leave the machine alone meanwhile. Each part writes a JSON file, a table and pic
 ``benchmarks/results/``, with the machine's name:
 
     unlit    time to the same error on unlit lamps, against Mitsuba 3 (nine minutes): ``unlit.*``
+    candela  time to 1 % candela at test points, against Mitsuba 3 (six minutes): ``candela.*``
     walks    what splitting, roulette and allotting bring, in rays (four minutes): ``walks.*``
     path     what the `path` method costs by wavelengths, threads, memory (four minutes): ``path.*``
     kernel   rays against Embree, the Hall method, the start of the program: ``bench.*``
@@ -23,6 +24,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Literal
 
+import candela
 import kernel
 import numpy as np
 import numpy.typing as npt
@@ -37,7 +39,7 @@ from lamplit.lamps import write_lamp
 HERE = Path(__file__).resolve().parent
 RESULTS = HERE / "results"
 ROUNDS = 5
-PARTS = ("unlit", "walks", "path", "kernel")
+PARTS = ("unlit", "candela", "walks", "path", "kernel")
 
 
 def main() -> None:
@@ -49,6 +51,8 @@ def main() -> None:
     RESULTS.mkdir(exist_ok=True)
     if "unlit" in options.parts:
         unlit.measure(RESULTS)
+    if "candela" in options.parts:
+        candela.measure(RESULTS)
     if "walks" in options.parts:
         walks.measure(RESULTS)
     if "path" in options.parts:

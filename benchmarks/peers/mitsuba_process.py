@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -50,6 +51,8 @@ class Pass:
 
     xyz: Array
     seconds: float
+    #: The processor's time of all threads.
+    core_s: float
 
 
 class Mitsuba(Child):
@@ -71,12 +74,15 @@ class Mitsuba(Child):
         self.load_s: float = self.greeting["load_s"]
         self.version: str = self.greeting["version"]
 
-    def render(self, samples: int, seed: int) -> Pass:
-        """Render ``samples`` per pixel; another ``seed`` is independent."""
+    def render(self, samples: int, seed: int, **instead: Mapping[str, Any]) -> Pass:
+        """Render ``samples`` per pixel; another ``seed`` is independent.
+
+        A ``sensor`` or ``integrator`` in ``instead`` stands in for the scene's own.
+        """
         picture = Path(self._folder.name) / "picture.npy"
-        asked = {"samples": samples, "seed": seed, "picture": str(picture)}
-        seconds = self.ask(asked)["seconds"]
-        return Pass(np.load(picture) * self._scale, seconds)
+        asked = {"samples": samples, "seed": seed, "picture": str(picture), **instead}
+        answer = self.ask(asked)
+        return Pass(np.load(picture) * self._scale, answer["seconds"], answer["core_s"])
 
     def close(self) -> None:
         """End the process and remove the scene's files."""

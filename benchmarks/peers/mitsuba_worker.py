@@ -4,9 +4,11 @@
     build/peers/bin/python mitsuba_worker.py VARIANT SCENE.json [LIBLLVM]
 
 Reads one JSON object per line, ``{"samples": n, "seed": s, "picture": "file.npy"}``, writes the
-picture as float64 (rows, columns, channels) and answers ``{"seconds": t}`` on one line. The first
-line that it writes says how long loading took. Runs in the peers' environment and so imports no
-Lamplit. Mesh files are found beside the scene file.
+picture as float64 (rows, columns, channels) and answers ``{"seconds": t, "core_s": c}`` on one
+line, c being the processor's time of all threads. A ``"sensor"`` and an ``"integrator"`` stand in
+for the scene's own; making them is not counted. The first line that it writes says how long loading
+took. Runs in the peers' environment and so imports no Lamplit. Mesh files are found beside the
+scene file.
 """
 
 import importlib
@@ -48,12 +50,18 @@ def main() -> None:
     print(json.dumps({"load_s": load_s, "version": mitsuba.__version__}), file=answers)
     for line in sys.stdin:
         asked = json.loads(line)
-        start = time.perf_counter()
-        picture = mitsuba.render(scene, spp=asked["samples"], seed=asked["seed"])
+        own = {
+            name: mitsuba.load_dict(plain_to_mitsuba(mitsuba, asked[name], scene_file.parent))
+            for name in ("sensor", "integrator")
+            if name in asked
+        }
+        start, core_start = time.perf_counter(), time.process_time()
+        picture = mitsuba.render(scene, spp=asked["samples"], seed=asked["seed"], **own)
         pixels = np.array(picture, dtype=np.float64)  # waits for the device
         seconds = time.perf_counter() - start
+        core_s = time.process_time() - core_start
         np.save(asked["picture"], pixels)
-        print(json.dumps({"seconds": seconds}), file=answers)
+        print(json.dumps({"seconds": seconds, "core_s": core_s}), file=answers)
 
 
 if __name__ == "__main__":
