@@ -211,7 +211,8 @@ def draw(found: dict[str, Any], path: Path) -> None:
                 times[-1] * ends, errors[-1] / np.sqrt(ends), ":", color=colour, linewidth=1
             )
     axes.axhline(WANTED, color="0.4", linewidth=1)
-    axes.set(xlabel="core seconds, for all points", ylabel="relative standard error")
+    axes.set(ylabel="relative standard error")
+    axes.set_xlabel("core seconds for all points, as many for each")
     axes.set_title("Candela at the test points of a stop lamp; dotted: σ ∝ 1/√time")
     axes.grid(which="both", linewidth=0.3)
     axes.legend(frameon=False)
