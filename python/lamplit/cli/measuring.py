@@ -147,6 +147,23 @@ class Wanted:
             )
         return value
 
+    @property
+    def checked_receiver_deg(self) -> float | None:
+        """The receiver's full angle in degrees; None: as the scene says.
+
+        Raises:
+            LamplitError: No regulation has such a receiver.
+        """
+        from lamplit.scene.measuring import LARGEST_RECEIVER_DEG, SMALLEST_RECEIVER_DEG
+
+        value = self.receiver_deg
+        smallest, largest = SMALLEST_RECEIVER_DEG - 1e-4, LARGEST_RECEIVER_DEG
+        if value is not None and not smallest <= value <= largest:
+            raise LamplitError(
+                f"a receiver subtends 1/6° (0.1667) to 1°, not {value:g}°", where="--receiver"
+            )
+        return value
+
 
 def measured(
     wanted: Wanted, budget: Budget, *, threads: int | None = None
@@ -163,11 +180,14 @@ def measured(
     from lamplit.report.photometry.measured import results_of
     from lamplit.report.photometry.progress import MeasuringProgress
 
+    distance_m, receiver_deg = wanted.distance_m, wanted.checked_receiver_deg
     scene = wanted.load()
     functions = asked_functions(scene, rules=wanted.rules)
     _check(budget, functions)
     spots, grid = directions(functions)
-    progress = MeasuringProgress("Measuring", time_s=budget.time_s)
+    progress = MeasuringProgress(
+        "Measuring", time_s=budget.time_s, paths=budget.most_paths, error=budget.error
+    )
     rounds = _Rounds(functions, budget, progress, production=wanted.production)
     with stop_signals() as stop, progress:
         try:
@@ -175,8 +195,8 @@ def measured(
                 scene,
                 spots=spots,
                 grid=grid,
-                distance_m=wanted.distance_m,
-                receiver_deg=wanted.receiver_deg,
+                distance_m=distance_m,
+                receiver_deg=receiver_deg,
                 paths=budget.most_paths,
                 error=budget.error,
                 time_s=budget.time_s,
@@ -259,7 +279,7 @@ def print_verdicts(results: Results) -> None:
             continue
         chosen = "" if not one.verdict.production else ", conformity of production"
         console.print(f": {escape(one.verdict.title)}, {escape(one.verdict.rule)}{chosen}\n")
-        console.print(findings_table(one))
+        console.print(findings_table(one, width=console.width))
     console.print()
     for one in results.functions:
         if one.verdict is not None:

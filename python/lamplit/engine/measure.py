@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import re
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
@@ -296,8 +297,9 @@ def _told(fault: str, scene: Scene, gonio: Goniometer, light: Light | None) -> S
         advice = "" if light else "; give one an emission with flux_lm"
         return SceneError(f"nothing can be measured: {what}{advice}", file=scene.path)
     if "the receivers stand" in fault and gonio.distance_m is not None:
+        rounded = re.sub(r"\d+\.\d+", lambda number: f"{float(number[0]):.4g}", fault)
         return SceneError(
-            f"{fault}; take a larger distance_m, or name objects that are not the lamp's in "
+            f"{rounded}; take a larger distance_m, or name objects that are not the lamp's in "
             "measure.leave_out",
             file=scene.path,
             where="measure.distance_m",
