@@ -212,7 +212,18 @@ def measured(
     if not (rounds.have_an_aim or measurement.interrupted):
         measurement = replace(measurement, complete=True)
     results = results_of(measurement, functions, production=wanted.production)
-    return results, measurement, stop
+    notices = (*results.notices, *_dark(measurement, functions))
+    return replace(results, notices=notices), measurement, stop
+
+
+def _dark(measurement: Measurement, functions: Sequence[Asked]) -> list[str]:
+    """Return a notice for each function whose light groups give no light at all."""
+    emitted = dict(zip(measurement.groups, measurement.emitted_xyz[:, 1].tolist(), strict=True))
+    return [
+        f"{one.name}: none of its light groups ({', '.join(one.light)}) gives any light"
+        for one in functions
+        if one.light and not any(weight * emitted[name] for name, weight in one.light.items())
+    ]
 
 
 class _Rounds:

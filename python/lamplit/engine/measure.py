@@ -26,6 +26,7 @@ from lamplit.engine.receivers import (
     checked_spots,
     measure_settings,
 )
+from lamplit.engine.seen_light import check_range
 from lamplit.errors import LamplitError, SceneError
 from lamplit.scene import Scene
 from lamplit.scene.lighting import BLACK
@@ -103,6 +104,7 @@ def measure(
     settings = measure_settings(scene)
     dark = in_laboratory(scene)
     carrier = SpectralCarrier(scene.image.wavelength_range_nm, scene.image.observer)
+    check_range(dark, carrier)
     world = assemble(dark, carrier)
     h, v = checked_spots(spots)
     h_edges, v_edges = checked_edges(grid)
