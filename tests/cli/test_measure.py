@@ -248,7 +248,17 @@ def test_a_distance_is_metres_or_far(
     [
         (["--distance", "near"], "'near' is no distance"),
         (["--distance", "-3"], "'-3' is no distance"),
+        (["--distance", "nan"], "'nan' is no distance"),
+        (["--distance", "0"], "'0' is no distance"),
+        (["--receiver", "0.1"], "1/6° (0.1667) to 1°, not 0.1°"),
+        (["--receiver", "2"], "to 1°, not 2°"),
+        (["--receiver", "nan"], "not nan°"),
+        (["--threads", "100000"], "--threads"),
         (["--rule", "un-r148/S9"], "no entry 'S9'"),
+        (["--rule", "un-r148/S1?period=day&period=night"], "names an option twice"),
+        (["--rule", "un-r184/S1"], "did you mean 'un-r148'? It has"),
+        (["--set", "measure.functions[0].light.filament=0"], "every weight is 0"),
+        (["--set", "objects[0].emission.flux_lm=1e300"], "less than or equal to 1000000000"),
         (["--rule", "stopp=un-r148/S1"], "no function or reflector 'stopp'; did you mean 'stop'?"),
         (["--rule", "un-r148/S1?period=noon"], "no choice"),
         (["--rule", "un-r150/IA"], "retro-reflectors"),
@@ -262,6 +272,30 @@ def test_what_cannot_be_asked_is_one_line(
     (line,) = [line for line in capsys.readouterr().err.splitlines() if line.startswith("error")]
     assert said in line
     assert not meter.calls
+
+
+def test_a_function_whose_groups_are_dark_is_told_so(
+    lamplit: Callable[..., int], lamp: Path, meter: Meter, tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    lamp.write_text(lamp.read_text().replace("{ filament = 0.1 }", "{ background = 1.0 }"))
+    assert lamplit("measure", lamp, "-o", tmp_path) == 0
+    assert "position: none of its light groups (background) gives any light" in (
+        capsys.readouterr().out
+    )
+    assert numbers_in(tmp_path)["outcome"] == "fail"
+
+
+def test_ctrl_c_before_walking_says_that_nothing_is_written(
+    lamplit: Callable[..., int], lamp: Path, tmp_path: Path,
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    def stopped(*_: Any, **__: Any) -> Any:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("lamplit.scene.load_scene", stopped)
+    assert lamplit("measure", lamp, "-o", tmp_path) == 130
+    assert capsys.readouterr().err == "stopped; nothing is written\n"
 
 
 def test_a_rule_may_be_for_one_function_and_have_options(lamp: Path) -> None:

@@ -145,6 +145,23 @@ class Wanted:
             )
         return value
 
+    @property
+    def checked_receiver_deg(self) -> float | None:
+        """The receiver's full angle in degrees; None: as the scene says.
+
+        Raises:
+            LamplitError: No regulation has such a receiver.
+        """
+        from lamplit.scene.measuring import LARGEST_RECEIVER_DEG, SMALLEST_RECEIVER_DEG
+
+        value = self.receiver_deg
+        smallest, largest = SMALLEST_RECEIVER_DEG - 1e-4, LARGEST_RECEIVER_DEG
+        if value is not None and not smallest <= value <= largest:
+            raise LamplitError(
+                f"a receiver subtends 1/6° (0.1667) to 1°, not {value:g}°", where="--receiver"
+            )
+        return value
+
 
 class Measured(NamedTuple):
     """What is shown, what was measured of the lit lamp, if it was, and what stopped it."""
@@ -182,6 +199,8 @@ def measured(wanted: Wanted, budget: Budget, *, threads: int | None = None) -> M
             measurement = _lit(scene, functions, wanted, budget, threads)
             if measurement.paths > 0:
                 results = results_of(measurement, functions, production=wanted.production)
+                notices = (*results.notices, *_dark(measurement, functions))
+                results = replace(results, notices=notices)
             interrupted = measurement.interrupted
         if reflectors and not interrupted:
             shown, found = measured_reflectors(
@@ -210,8 +229,11 @@ def _lit(
     from lamplit.cli.functions import directions
     from lamplit.report.photometry.progress import MeasuringProgress
 
+    distance_m, receiver_deg = wanted.distance_m, wanted.checked_receiver_deg
     spots, grid = directions(functions)
-    progress = MeasuringProgress("Measuring", time_s=budget.time_s)
+    progress = MeasuringProgress(
+        "Measuring", time_s=budget.time_s, paths=budget.most_paths, error=budget.error
+    )
     rounds = _Rounds(functions, budget, progress, production=wanted.production)
     with progress:
         try:
@@ -219,8 +241,8 @@ def _lit(
                 scene,
                 spots=spots,
                 grid=grid,
-                distance_m=wanted.distance_m,
-                receiver_deg=wanted.receiver_deg,
+                distance_m=distance_m,
+                receiver_deg=receiver_deg,
                 paths=budget.most_paths,
                 error=budget.error,
                 time_s=budget.time_s,
@@ -231,6 +253,16 @@ def _lit(
         except engine.MeasureInterrupted as stopped:
             return stopped.measurement
     return measurement if rounds.have_an_aim else replace(measurement, complete=True)
+
+
+def _dark(measurement: Measurement, functions: Sequence[Asked]) -> list[str]:
+    """Return a notice for each function whose light groups give no light at all."""
+    emitted = dict(zip(measurement.groups, measurement.emitted_xyz[:, 1].tolist(), strict=True))
+    return [
+        f"{one.name}: none of its light groups ({', '.join(one.light)}) gives any light"
+        for one in functions
+        if one.light and not any(weight * emitted[name] for name, weight in one.light.items())
+    ]
 
 
 class _Rounds:

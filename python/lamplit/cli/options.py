@@ -54,7 +54,9 @@ SizeOption = Annotated[
 ]
 ThreadsOption = Annotated[
     int | None,
-    typer.Option("--threads", min=1, help="Threads; the picture does not depend on them."),
+    typer.Option(
+        "--threads", min=1, max=1024, help="Threads, 1 to 1024; the results do not depend on them."
+    ),
 ]
 SetOption = Annotated[
     list[str] | None,

@@ -33,7 +33,7 @@ def print_verdicts(results: Results) -> None:
             continue
         chosen = "" if not one.verdict.production else ", conformity of production"
         console.print(f": {escape(one.verdict.title)}, {escape(one.verdict.rule)}{chosen}\n")
-        console.print(findings_table(one))
+        console.print(findings_table(one, width=console.width))
     for one in results.reflectors:
         rule = "no rule, nothing is judged"
         if one.verdict is not None:

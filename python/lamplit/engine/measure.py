@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -23,6 +24,7 @@ from lamplit.engine.receivers import (
     checked_spots,
     measure_settings,
 )
+from lamplit.engine.seen_light import check_range
 from lamplit.errors import LamplitError, SceneError
 from lamplit.scene import Scene
 from lamplit.scene.lighting import BLACK
@@ -81,6 +83,7 @@ def measure(
     settings = measure_settings(scene)
     dark = in_laboratory(scene)
     carrier = SpectralCarrier(scene.image.wavelength_range_nm, scene.image.observer)
+    check_range(dark, carrier)
     world = assemble(dark, carrier)
     h, v = checked_spots(spots)
     h_edges, v_edges = checked_edges(grid)
@@ -179,8 +182,9 @@ def refused(fault: str, scene: Scene, gonio: Goniometer, light: Light | None) ->
         advice = "" if light else "; give one an emission with flux_lm"
         return SceneError(f"nothing can be measured: {what}{advice}", file=scene.path)
     if "the receivers stand" in fault and gonio.distance_m is not None:
+        rounded = re.sub(r"\d+\.\d+", lambda number: f"{float(number[0]):.4g}", fault)
         return SceneError(
-            f"{fault}; take a larger distance_m, or name objects that are not the lamp's in "
+            f"{rounded}; take a larger distance_m, or name objects that are not the lamp's in "
             "measure.leave_out",
             file=scene.path,
             where="measure.distance_m",

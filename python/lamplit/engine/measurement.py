@@ -141,8 +141,8 @@ class Measurement:
         """Return the variances of the mean of a group's Y (b, …): of the spread, and as a bound."""
         mean, variance = y.mean(axis=0), variance_of_mean(y)
         unseen, seen = self._hits_lm[group]
-        hit: Array = np.where(mean > 0.0, seen, unseen) / solid_angle
-        return variance, let_out(mean, variance, hit)
+        one = np.where(mean > 0.0, seen, unseen)
+        return variance, let_out(mean, variance, np.divide(one, solid_angle, dtype=np.float64))
 
     def _few_hits(self, group: int, xyz: Array, solid_angle: float) -> Array:
         """Return what the covariance of a group's X, Y, Z (b, p, 3) grows by, (p, 3, 3)."""

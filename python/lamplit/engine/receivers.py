@@ -17,6 +17,8 @@ from lamplit.scene.measuring import MeasureSettings
 Array = NDArray[np.float64]
 
 _MM_PER_M = 1e3
+#: Cells of a grid, at most: each takes some 800 bytes for each light group.
+_MOST_CELLS = 1_000_000
 #: Borders of the grid's cells where nothing else is asked for: 1° over the front half space.
 _EDGES_DEG = np.arange(-90.0, 90.5)
 
@@ -161,7 +163,7 @@ def checked_edges(grid: tuple[ArrayLike, ArrayLike] | None) -> tuple[Array, Arra
     """Return the borders of the cells along H and V in degrees; for None, 1° over ±90°.
 
     Raises:
-        LamplitError: They do not rise, or leave ±180° and ±90°.
+        LamplitError: They do not rise, leave ±180° and ±90°, or make more cells than memory holds.
     """
     if grid is None:
         return _EDGES_DEG.copy(), _EDGES_DEG.copy()
@@ -173,4 +175,9 @@ def checked_edges(grid: tuple[ArrayLike, ArrayLike] | None) -> tuple[Array, Arra
                 f"the borders of a grid's cells along {name} rise, within ±{most:g}°; "
                 "two are needed at least"
             )
+    if (h.size - 1) * (v.size - 1) > _MOST_CELLS:
+        raise LamplitError(
+            f"a grid of {h.size - 1} times {v.size - 1} cells is more than the {_MOST_CELLS} "
+            "that a measurement keeps; take larger cells (cell_deg of a rule file)"
+        )
     return h, v

@@ -41,8 +41,8 @@ def load_rules(name: str | Path, *, root: Path | None = None) -> RuleSet:
         if text not in rule_set_names():
             near = nearest_name(text, rule_set_names())
             raise RuleError(
-                f"the library has no rules {text[:60]!r}{near}; "
-                f"it has {', '.join(rule_set_names())}, and an own file ends in .toml"
+                f"the library has no rules {text[:60]!r}{near or '.'} "
+                f"It has {', '.join(rule_set_names())}; a file of your own ends in .toml"
             )
         return _from_library(text)
     if root is None:
@@ -74,6 +74,8 @@ def find_rule(text: str, *, root: Path | None = None) -> Rule:
             f"{text[:60]!r} names no rule; write it as un-r148/S1, my-rules.toml/X or "
             "un-r148/S2?period=night"
         )
+    if len(options) < len(pairs):
+        raise RuleError(f"{text[:60]!r} names an option twice; name it once")
     return load_rules(name, root=root).entry(entry).under(**options)
 
 

@@ -265,7 +265,9 @@ class RuleFile(Table):
     notices: Annotated[
         list[Text], Field(default_factory=list, description="what every verdict must say")
     ]
-    cell_deg: Annotated[Positive, Field(le=10.0, description="size of the cells to measure")] = 1.0
+    cell_deg: Annotated[
+        Positive, Field(ge=0.05, le=10.0, description="size of the cells to measure")
+    ] = 1.0
     options: Annotated[dict[str, Option], Field(default_factory=dict)]
     grids: Annotated[dict[str, Grid], Field(default_factory=dict)]
     groupings: Annotated[dict[str, Grouping], Field(default_factory=dict)]

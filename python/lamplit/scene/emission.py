@@ -12,7 +12,15 @@ from numpy.typing import NDArray
 from pydantic import Discriminator, Field, Tag, model_validator
 from pydantic_core import PydanticCustomError
 
-from lamplit.scene.fields import Direction, FileName, GroupName, NotNegative, Positive, Table
+from lamplit.scene.fields import (
+    Amount,
+    Direction,
+    FileName,
+    GroupName,
+    NotNegative,
+    Positive,
+    Table,
+)
 from lamplit.sources import BulbName
 from lamplit.spectra_spec import FractionSpec, SourceSpec
 from lamplit.spectrum import SpectralDistribution
@@ -86,15 +94,15 @@ class Emission(Table):
     source: SourceSpec | None = Field(
         default=None, description="the shape of the spectrum; its scale has no meaning"
     )
-    flux_lm: NotNegative | None = Field(default=None, description="luminous flux of the object")
-    flux_lm_at_25_celsius: NotNegative | None = Field(
+    flux_lm: Amount | None = Field(default=None, description="luminous flux of the object")
+    flux_lm_at_25_celsius: Amount | None = Field(
         default=None,
         description="that of its LED when cold, as in data sheets; its heat is counted",
     )
     bulb: BulbName | None = Field(
         default=None, description="the flux of a bulb; `lamplit sources` lists them"
     )
-    radiant_flux_w: NotNegative | None = Field(
+    radiant_flux_w: Amount | None = Field(
         default=None, description="radiant flux of the object within image.wavelength_range_nm"
     )
     luminance_cd_m2: NotNegative | None = Field(

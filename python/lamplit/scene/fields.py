@@ -14,6 +14,8 @@ FARTHEST_MM = 1e9
 Number: TypeAlias = Annotated[float, Field(allow_inf_nan=False)]
 Positive: TypeAlias = Annotated[float, Field(allow_inf_nan=False, gt=0.0)]
 NotNegative: TypeAlias = Annotated[float, Field(allow_inf_nan=False, ge=0.0)]
+#: A flux or a weight: far above any lamp's, and far below what overflows when it is squared.
+Amount: TypeAlias = Annotated[float, Field(allow_inf_nan=False, ge=0.0, le=1e9)]
 Share: TypeAlias = Annotated[float, Field(allow_inf_nan=False, ge=0.0, le=1.0)]
 Coordinate: TypeAlias = Annotated[
     float, Field(allow_inf_nan=False, ge=-FARTHEST_MM, le=FARTHEST_MM)

@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from lamplit.errors import SceneError, nearest_name
-from lamplit.scene.fields import Direction, GroupName, Name, NotNegative, Point, Positive, Table
+from lamplit.scene.fields import Amount, Direction, GroupName, Name, Point, Positive, Table
 
 if TYPE_CHECKING:
     from lamplit.scene.models import Scene
@@ -35,7 +35,7 @@ class LampFunction(Table):
     rule: Annotated[str, Field(max_length=300)] | None = Field(
         default=None, description="what it has to meet: RULES/ENTRY, such as un-r148/S1"
     )
-    light: dict[GroupName, NotNegative] = Field(
+    light: dict[GroupName, Amount] = Field(
         default_factory=dict[str, float],
         description="weight of each light group that is lit; left out: all, 1 each",
     )
@@ -147,6 +147,11 @@ def check_measuring(scene: Scene) -> None:
             )
         for group in function.light:
             _known("light group", group, groups, f"{where}.light")
+        if function.light and not any(function.light.values()):
+            raise SceneError(
+                "every weight is 0, so the function has no light; give one above 0",
+                where=f"{where}.light",
+            )
         if function.with_position is not None:
             others = {*functions} - {function.name}
             _known("other function", function.with_position, others, f"{where}.with_position")

@@ -77,6 +77,22 @@ def test_how_many_paths_would_decide_is_said_where_a_number_would(
     on_it = replace(make_finding(61.0, 1.0, 60.0), paths_factor=float("inf"))
     assert more_paths(on_it) == "on the limit: no number of paths decides it"
     assert more_paths(make_finding(90.0, 1.0, 60.0)) == ""
+    faint = make_finding(0.0, 3625.0, 1.6)
+    assert more_paths(faint) == "more than a million × as many paths would decide it"
+
+
+def test_a_terminal_of_80_columns_has_room_for_what_is_required(
+    make_observed: Callable[..., Observed], make_verdict: Callable[..., Verdict]
+) -> None:
+    seen = make_observed()
+    console = Console(width=80)
+    with console.capture() as captured:
+        console.print(findings_table(FunctionResults(seen, make_verdict(seen)), width=80))
+    lines = captured.get().splitlines()
+    assert max(map(len, lines)) <= 80
+    assert "H °" not in lines[0]
+    column = lines[0].index("requirement")
+    assert 80 - column >= 28, "a remark of ten words takes three lines, not ten"
 
 
 def test_what_decides_is_one_sentence(make_finding: Callable[..., Finding]) -> None:

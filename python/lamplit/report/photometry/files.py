@@ -6,6 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from lamplit.photometry import PhotometryError
 from lamplit.photometry.measured import from_hv
 from lamplit.photometry.writing import FileLabels, write_ies, write_ldt
 from lamplit.report.atomic import prepare_output, write_bytes
@@ -68,9 +69,13 @@ def _write_photometric_files(
         laboratory=f"computed by Lamplit {results.version}",
         others={"OTHER": f"seed {results.seed}, {results.paths} paths"},
     )
-    write_ies(directory / f"{stem}.ies", grid, labels)
-    write_ldt(directory / f"{stem}.ldt", grid, labels)
-    return {
-        f"{stem}.ies": "IES LM-63-2019, type A: the grid as it is",
-        f"{stem}.ldt": "EULUMDAT, C-planes through the grid; 0 beyond it",
-    }
+    ies, ldt = f"{stem}.ies", f"{stem}.ldt"
+    write_ies(directory / ies, grid, labels)
+    written = {ies: "IES LM-63-2019, type A: the grid as it is"}
+    try:
+        write_ldt(directory / ldt, grid, labels)
+    except PhotometryError:
+        # The grid could be said in an IES file, so it is that its C-planes meet no light at all.
+        (directory / ldt).unlink(missing_ok=True)
+        return written
+    return written | {ldt: "EULUMDAT, C-planes through the grid; 0 beyond it"}

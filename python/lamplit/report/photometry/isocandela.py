@@ -97,11 +97,13 @@ def brightest(observed: Observed) -> tuple[float, float, float]:
 def window(function: FunctionResults) -> tuple[float, float, float, float]:
     """Return the part of the grid worth looking at: least and greatest H, then V, in degrees.
 
-    It holds the spots, the fields of visibility, and all cells above a twentieth of the brightest.
+    It holds the spots, the fields of visibility, and all cells that are certainly, by 2 σ, above a
+    twentieth of the brightest: a single hit near a pole, where cells are small, looks bright.
     """
     observed = function.observed
     h, v = observed.grid_h_edges_deg, observed.grid_v_edges_deg
-    bright = observed.grid_cd > _WORTH_A_LOOK * observed.grid_cd.max()
+    certain = observed.grid_cd - 2.0 * observed.grid_standard_error_cd
+    bright = certain > _WORTH_A_LOOK * observed.grid_cd.max()
     columns, rows = np.flatnonzero(bright.any(axis=0)), np.flatnonzero(bright.any(axis=1))
     across, along = [*observed.spot_h_deg], [*observed.spot_v_deg]
     across += [h[columns[0]], h[columns[-1] + 1]] if columns.size else [h[0], h[-1]]

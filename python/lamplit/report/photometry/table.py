@@ -23,6 +23,10 @@ if TYPE_CHECKING:
 _SAME_PLACE_DEG = 0.01
 #: What a test point is about; ratios and colours are told apart from it.
 _INTENSITIES = ("cd", "mcd/lx")
+#: So many times as many paths are not counted any more.
+_MANY_TIMES = 1e6
+#: A terminal narrower than this shows what is required in a line of its own below the numbers.
+_NARROW = 100
 
 
 @dataclass(frozen=True)
@@ -151,8 +155,10 @@ def more_paths(finding: Finding) -> str:
     factor = finding.paths_factor
     if finding.outcome != "undecided" or factor is None:
         return ""
-    if not np.isfinite(factor) or factor > 1e6:
+    if not np.isfinite(factor):
         return "on the limit: no number of paths decides it"
+    if factor > _MANY_TIMES:
+        return "more than a million × as many paths would decide it"
     digits = ".2g" if factor < 10.0 else ".0f"
     return f"{factor:{digits}} × as many paths would decide it"
 
@@ -176,13 +182,19 @@ def in_words(verdict: Verdict) -> str:
     return f"{words}; {more}" if more else words
 
 
-def findings_table(function: FunctionResults) -> Table:
-    """Return the findings on ``function`` for the terminal: test points first, then the rest."""
+def findings_table(function: FunctionResults, *, width: int = 120) -> Table:
+    """Return the findings on ``function`` for the terminal: test points first, then the rest.
+
+    On a terminal of less than 100 columns, H and V stand in words, and only where the requirement
+    does not name its point.
+    """
     from rich.table import Table
     from rich.text import Text
 
-    table = Table(box=None, header_style="bold", pad_edge=False)
-    for heading in ("H °", "V °", "got", "2 σ", "required", "margin", "", "requirement"):
+    narrow = width < _NARROW
+    angles = () if narrow else ("H °", "V °")
+    table = Table(box=None, header_style="bold", pad_edge=False, padding=(0, 1 - narrow, 0, 1))
+    for heading in (*angles, "got", "2 σ", "required", "margin", "", "requirement"):
         numeric = heading not in ("", "requirement")
         table.add_column(heading, justify="right" if numeric else "left", no_wrap=numeric)
     verdict = function.verdict
@@ -194,10 +206,12 @@ def findings_table(function: FunctionResults) -> Table:
     for finding, count in [*((finding, 1) for finding in ordered), *others]:
         mark = MARKS[finding.outcome]
         many = f"worst of {count} directions" if count > 1 else ""
-        notes = [finding.requirement, many, finding.remark, more_paths(finding)]
+        where = place(finding) if narrow and " at " not in finding.requirement else ""
+        notes = [finding.requirement, where, many, finding.remark, more_paths(finding)]
+        h_deg, v_deg = finding.h_deg, finding.v_deg
+        directions = ["" if own is None else angle(own) for own in (h_deg, v_deg)]
         table.add_row(
-            "" if finding.h_deg is None else angle(finding.h_deg),
-            "" if finding.v_deg is None else angle(finding.v_deg),
+            *([] if narrow else directions),
             Text(got(finding)),
             two_sigma(finding),
             Text(required(finding)),
