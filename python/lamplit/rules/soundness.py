@@ -49,7 +49,7 @@ def check_rules(rules: RuleSet) -> None:
 def _named(name: str, known: Collection[str], kind: str, where: str) -> None:
     if name not in known:
         near = nearest_name(name, known) or f"; there are {', '.join(known) or 'none'}"
-        raise RuleError(f"{name[:60]!r} is no {kind}{near}", where=where)
+        raise RuleError(f"there is no {kind} {name[:60]!r}{near}", where=where)
 
 
 def _check_options(file: RuleFile, entry: Entry, where: str) -> None:

@@ -47,13 +47,13 @@ class MeasuringProgress(Progress):
         if self._aim is not None:
             self._needed = self._done * (relative_error / self._aim) ** 2
 
-    def _share(self, done: int, total: int, elapsed_s: float) -> float | None:
+    def _share(self, done: int, total: int, elapsed_s: float) -> float | None:  # noqa: ARG002
         shares = [0.0 if self._time_s is None else elapsed_s / self._time_s]
         shares += [done / most for most in (self._paths, self._needed) if most]
         share = min(max(shares), 1.0)
         return share if share > 0.0 else None
 
-    def _details(self, done: int, total: int, elapsed_s: float) -> Iterator[str]:
+    def _details(self, done: int, total: int, elapsed_s: float) -> Iterator[str]:  # noqa: ARG002
         most = "" if self._paths is None else f"of {in_words(self._paths)} "
         yield f"{in_words(done)} {most}paths"
         if elapsed_s > 0.0:
