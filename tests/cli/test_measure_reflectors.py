@@ -95,11 +95,11 @@ def test_a_reflector_gets_its_coefficients_its_verdict_and_its_page(
     assert outcomes["CIL at observation 20′", 0.0, 0.0] == "fail"
     assert outcomes["CIL at observation 1°30′", 0.0, 0.0] == "pass"
     assert numbers["outcome"] == plate["verdict"]["outcome"] == "fail"
-    rows = list(csv.DictReader((out / "reflex.csv").open(encoding="utf-8")))
+    rows = list(csv.DictReader((out / "reflex.csv").read_text("utf-8").splitlines()))
     assert [float(row["CIL_mcd_per_lx"]) for row in rows] == [
         reading["cil_mcd_per_lx"] for reading in plate["readings"]
     ]
-    points = list(csv.DictReader((out / "points.csv").open(encoding="utf-8")))
+    points = list(csv.DictReader((out / "points.csv").read_text("utf-8").splitlines()))
     assert {row["unit"] for row in points} == {"mcd/lx"}
     assert len(points) == 14
     assert not (out / "candela.csv").exists()
