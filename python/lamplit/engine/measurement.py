@@ -140,9 +140,10 @@ class Measurement:
     def _let_out(self, group: int, y: Array, solid_angle: Array | float) -> tuple[Array, Array]:
         """Return the variances of the mean of a group's Y (b, …): of the spread, and as a bound."""
         mean, variance = y.mean(axis=0), variance_of_mean(y)
-        hits: Array = self._hits_lm[group]
-        one: Array = np.where(mean > 0.0, hits[1], hits[0])
-        return variance, let_out(mean, variance, one / solid_angle)
+        unseen, seen = self._hits_lm[group].tolist()
+        is_seen: Array = np.greater(mean, 0.0).astype(np.float64)
+        hit = (is_seen * seen + (1.0 - is_seen) * unseen) / solid_angle
+        return variance, let_out(mean, variance, hit)
 
     def _few_hits(self, group: int, xyz: Array, solid_angle: float) -> Array:
         """Return what the covariance of a group's X, Y, Z (b, p, 3) grows by, (p, 3, 3)."""
