@@ -3,11 +3,13 @@
 
 Writes the meshes and the scene of a lamp for a P21W bulb. Follows its light physically, each of the
 studio's lights in a layer of its own, and dims the studio afterwards. Then renders the lamp once in
-RGB and once in spectra along the same rays, and says how far the two are apart.
+RGB and once in spectra along the same rays, and says how far the two are apart. At last lights the
+bulb, and measures the lamp as the command line does.
 """
 
 from __future__ import annotations
 
+import subprocess
 import sys
 from pathlib import Path
 
@@ -22,6 +24,7 @@ from lamplit.scene.lighting import StudioBackground
 
 OUTPUT = Path("out/demo")
 PATH_SECONDS = 20.0
+MEASURE_SECONDS = 10
 #: How much of each soft box of the studio is left in the dimmed picture.
 DIMMED = 0.2
 SIZE = {"image.width": 560, "image.height": 350, "image.samples": 9}  # 55 million rays in all
@@ -55,8 +58,24 @@ def follow_light(scene: ll.Scene) -> ll.Image:
     return image
 
 
+def measure_candela() -> None:
+    """Light the lamp's bulb, measure its candela and colours, and put them on a page."""
+    lit, measured = OUTPUT / "lit", OUTPUT / "measured"
+    scene = write_lamp("p21w", lit, {"lit": True})
+    for command in (
+        ["measure", str(scene), "-o", str(measured), "--time", str(MEASURE_SECONDS)],
+        ["report", str(measured), "-o", str(OUTPUT / "measured.html")],
+    ):
+        program = [sys.executable, "-m", "lamplit.cli"]
+        done = subprocess.run([*program, *command], check=False)  # noqa: S603
+        if done.returncode == 130:
+            raise KeyboardInterrupt
+        if done.returncode:
+            raise ll.LamplitError(f"lamplit {command[0]} ended with code {done.returncode}")
+
+
 def main() -> None:
-    """Write the lamp, render and compare it, and say which files to open."""
+    """Write the lamp, render, compare and measure it, and say which files to open."""
     scene = ll.load_scene(write_lamp("p21w", OUTPUT / "lamp"), overrides=SIZE)
     print(f"{scene.name}: {scene.image.width} × {scene.image.height} pixels")
     image = follow_light(scene)
@@ -64,6 +83,8 @@ def main() -> None:
     with Progress("RGB and spectral") as progress:
         pair = ll.compare(scene, progress=progress)
     difference = write_comparison(pair.spectral, pair.rgb, OUTPUT)
+
+    measure_candela()
 
     seconds = pair.spectral.elapsed_s + pair.rgb.elapsed_s
     rays = sum(
@@ -81,6 +102,7 @@ def main() -> None:
         f"\nFiles to open, in {OUTPUT}:"
     )
     files = {
+        "measured.html": "candela and colour of the lit lamp, and whether it passes",
         "path/picture.png": "the lamp, its light followed physically",
         "path/layers.exr": "the light of each part of the studio by itself",
         "path/mix/picture.png": f"the same with its soft boxes at {100 * DIMMED:.0f} %",
