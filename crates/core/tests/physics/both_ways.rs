@@ -103,7 +103,7 @@ fn a_rough_pane_before_a_lamp() {
     let pane = cuboid(DVec3::new(-12.0, 4.0, -12.0), DVec3::new(12.0, 8.0, 12.0));
     world.add_rough(body(flat(1.6), dye, None), 0.4, pane);
     let spots = [spot(0.0, 0.0, 20.0), spot(50.0, 0.0, 20.0), spot(95.0, 0.0, 20.0)];
-    both(world, &spots, (DVec3::Y * 4.0, 34.0), (1 << 19, 8, 32), 0.08);
+    both(world, &spots, (DVec3::Y * 4.0, 34.0), (1 << 20, 8, 64), 0.06);
 }
 
 #[test]
@@ -119,8 +119,8 @@ fn a_dispersive_prism_before_a_lamp() {
     ];
     let prism = Shape::Polyhedron(ConvexPolyhedron::tetrahedron(points).unwrap());
     world.add(body(by_lane(|lane| 1.75 - 0.015 * lane as f64), flat(0.01), None), prism);
-    let spots = [spot(0.0, 0.0, 20.0), spot(40.0, 20.0, 20.0)];
-    both(world, &spots, (DVec3::Y * 6.0, 34.0), (1 << 19, 8, 16), 0.06);
+    let spots = [spot(0.0, 0.0, 20.0), spot(40.0, 20.0, 20.0), spot(-50.0, 0.0, 20.0)];
+    both(world, &spots, (DVec3::Y * 6.0, 34.0), (1 << 20, 32, 128), 0.06);
 }
 
 #[test]
