@@ -133,6 +133,11 @@ impl Pilot {
 }
 
 impl Allocation {
+    /// So many for each pixel.
+    pub fn given(counts: Vec<u32>) -> Self {
+        Self { counts }
+    }
+
     /// How many samples the pixel takes.
     pub fn of(&self, pixel: usize) -> u32 {
         self.counts[pixel]

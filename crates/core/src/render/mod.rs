@@ -3,6 +3,7 @@
 
 mod allocation;
 mod features;
+mod learning;
 mod pass;
 mod photometer;
 mod settings;
@@ -15,11 +16,12 @@ use thiserror::Error;
 
 use crate::film::Film;
 use crate::scene::{Interior, Scene};
-use crate::transport::Tally;
+use crate::transport::{Guide, Tally};
 use allocation::{Allocation, Pilot};
 use pass::Pass;
 
 pub use features::{features, Features};
+pub use learning::learn;
 pub use photometer::{Batch, MeasureError, Photometer, BATCHES};
 pub use settings::{Method, RenderSettings, DEEPEST};
 
@@ -54,6 +56,14 @@ pub enum RenderError {
         deepest: u32,
         /// What was asked for.
         asked: u32,
+    },
+    /// Not every pixel has a count of samples.
+    #[error("there are {counts} counts of samples for {pixels} pixels")]
+    Counts {
+        /// How many pixels there are.
+        pixels: usize,
+        /// How many counts there are.
+        counts: usize,
     },
     /// The threads cannot be started.
     #[error("the threads cannot be started: {0}")]
@@ -93,7 +103,11 @@ pub fn render(
     let interior = eye_interior(scene)?;
     let threads = rayon::ThreadPoolBuilder::new().num_threads(settings.threads);
     let pool = threads.stack_size(STACK).build()?;
-    pool.install(|| Ok(Rendering { scene, settings, interior, progress }.run()))
+    pool.install(|| {
+        let guide = learning::guide(scene, settings);
+        let guide = guide.as_deref();
+        Ok(Rendering { scene, settings, interior, guide, progress }.run())
+    })
 }
 
 /// The bodies that the eye is in.
@@ -106,6 +120,7 @@ struct Rendering<'a> {
     scene: &'a Scene,
     settings: &'a RenderSettings,
     interior: Interior,
+    guide: Option<&'a Guide>,
     progress: &'a Progress,
 }
 
@@ -113,6 +128,9 @@ impl Rendering<'_> {
     fn run(&self) -> Rendered {
         let started = Instant::now();
         let samples = self.settings.samples.clone();
+        if let Some(counts) = &self.settings.counts {
+            return self.expose_by(counts, samples.start);
+        }
         self.expect(self.pixels() * samples.len() as u64);
         let mut film = self.settings.new_film(self.scene);
         let mut tally = Tally::new(self.scene.bodies.len());
@@ -129,6 +147,17 @@ impl Rendering<'_> {
             let range = rest..samples.start.saturating_add(allocation.most());
             self.expose(&mut film, &mut tally, range, None, Some(&allocation));
         }
+        Rendered { film, tally }
+    }
+
+    /// Take as many samples of each pixel as the caller says.
+    fn expose_by(&self, counts: &[u32], first: u32) -> Rendered {
+        let mut film = self.settings.new_film(self.scene);
+        let mut tally = Tally::new(self.scene.bodies.len());
+        let allocation = Allocation::given(counts.to_vec());
+        self.expect(allocation.total());
+        let range = first..first.saturating_add(allocation.most());
+        self.expose(&mut film, &mut tally, range, None, Some(&allocation));
         Rendered { film, tally }
     }
 
@@ -176,8 +205,9 @@ impl Rendering<'_> {
         let (mut next, mut length) = (samples.start, 1);
         while next < samples.end && !self.progress.is_cancelled() {
             let end = samples.end.min(next + length);
-            let Self { scene, settings, interior, progress } = *self;
-            let pass = Pass { scene, settings, interior, samples: next..end, limit, progress };
+            let Self { scene, settings, interior, guide, progress } = *self;
+            let pass =
+                Pass { scene, settings, interior, samples: next..end, limit, guide, progress };
             tally.add(&pass.run(film));
             next = end;
             length = (length * 2).min(LONGEST_PASS);

@@ -17,6 +17,8 @@ pub(super) struct Branch {
     pub interior: Interior,
     /// Its random numbers.
     pub sampler: PixelSampler,
+    /// How far it has come, in mm, since it started or turned at random.
+    pub way: f64,
     /// How many surfaces and scatterings it has behind it.
     pub depth: u32,
     /// How many times its tree has been split above it.
@@ -62,7 +64,8 @@ impl Branch {
     /// The branch that every other comes from.
     pub fn from_eye((ray, interior): (Ray, Interior), sampler: PixelSampler) -> Self {
         let (throughput, came_by) = (SampledSpectrum::ONE, CameBy::OneWay);
-        Self { ray, throughput, interior, sampler, depth: 0, splits: 0, came_by, promise: 1.0 }
+        let (way, depth, splits, promise) = (0.0, 0, 0, 1.0);
+        Self { ray, throughput, interior, sampler, way, depth, splits, came_by, promise }
     }
 
     /// Go on from a mirror or a smooth interface.
