@@ -30,7 +30,7 @@ from lit_pictures import Sheet
 from lit_reference import Reference, reference
 from lit_report import as_markdown, draw
 from lit_runners import MITSUBA, Lamplit, MitsubaVariant, Runner, Shot
-from lit_scene import HEIGHT, LAMPS, WIDTH, lit_scene
+from lit_scene import HEIGHT, WIDTH, lit_scene
 from machine import machine
 from peers.mitsuba_process import Mitsuba, variants
 
@@ -39,6 +39,8 @@ from lamplit.engine.plan import METHODS as KNOWN
 
 #: Lamplit's methods that trace light physically; the first is what others are held against.
 METHODS = ("path", "lit")
+#: The lamps that are measured unless others are asked for.
+USUAL = ("L1", "L2", "L3", "L4")
 
 
 @dataclass(frozen=True)
@@ -76,7 +78,7 @@ def measure(
     results: Path,
     settings: Settings = Settings(),
     *,
-    lamps: Sequence[str] = tuple(LAMPS),
+    lamps: Sequence[str] = USUAL,
     methods: Sequence[str] = METHODS,
 ) -> None:
     """Measure ``lamps`` by ``methods`` and write what came out into the folder ``results``."""
@@ -126,6 +128,7 @@ def _measure_lamp(
         row["reference"] = {
             "weights": dict(wanted.weights),
             "made": {name: list(made) for name, made in wanted.made.items()},
+            "scales": dict(wanted.scales),
             "own_errors": wanted.own_errors(),
             "long_runs": wanted.long_runs(),
         }
@@ -182,7 +185,7 @@ def _climb(
         for name, runner in runners.items():
             whole = seed == 1 or name == MITSUBA
             shots = runner.shots(ladder if whole else ladder[-1:], seed)
-            told[name].append([_told(shot, wanted.xyz) for shot in shots])
+            told[name].append([_told(shot, wanted.picture_for(name)) for shot in shots])
             last[name].append(shots[-1])
     return told, last
 
@@ -204,13 +207,14 @@ def _view(
     shots: Mapping[str, list[Shot]],
     wanted: Reference,
 ) -> dict[str, Any]:
-    target = wanted.estimate
     return {
         "size": [scene.image.width, scene.image.height],
         "judged_core_s": judged_core_s,
         "ladders": ladders,
         "agreement": {
-            name: Estimate.of(np.stack([shot.xyz for shot in own])).against(target)
+            name: Estimate.of(np.stack([shot.xyz for shot in own])).against(
+                wanted.estimate_for(name)
+            )
             for name, own in shots.items()
         },
     }

@@ -5,6 +5,8 @@ L1  P21W in a glass bulb, paraboloid of rough aluminium (GGX 0.05), clear lens w
 L2  the same with a mirror-smooth paraboloid
 L3  twelve dies of 1 mm over a matt white floor, behind a clear cover with pillows
 L4  as L3, the cover rough (GGX 0.3)
+
+L1-axis is L1 seen from straight ahead.
 """
 
 from __future__ import annotations
@@ -34,9 +36,11 @@ LAMPS: dict[str, tuple[str, dict[str, Any]]] = {
     "L3": ("led-array", _DIES),
     "L4": ("led-array", {**_DIES, "cover_roughness": 0.3}),
 }
+LAMPS["L1-axis"] = LAMPS["L1"]
 #: The camera stands so far off the lamp's axis, in a plane turned from the horizontal one.
-OFF_AXIS_DEG, TURNED_DEG = 17.6, 27.0
-#: Width and height of the picture; `benchmarks/lit_errors.py` halves it exactly.
+_OFF_AXIS_DEG, _TURNED_DEG = {"L1-axis": 0.0}, 27.0
+_USUAL_OFF_AXIS_DEG = 17.6
+#: Width and height of the picture.
 WIDTH, HEIGHT = 400, 200
 _DISTANCE_MM = 600.0
 #: The lamp leaves this share of the picture free.
@@ -44,10 +48,8 @@ _MARGIN = 0.04
 _M2_PER_MM2 = 1e-6
 
 
-def lit_scene(
-    name: str, folder: Path, *, triangles: int, off_axis_deg: float = OFF_AXIS_DEG
-) -> ll.Scene:
-    """Return the lamp L1, L2, L3 or L4 as both programs can walk it, filling the picture.
+def lit_scene(name: str, folder: Path, *, triangles: int) -> ll.Scene:
+    """Return one of `LAMPS` as both programs can walk it, filling the picture.
 
     Flat triangles, since smooth normals of coarse meshes are not reciprocal; one index for all
     wavelengths; a dark room; each source by its luminance, Φ/(π A) of Lambert's law.
@@ -63,6 +65,7 @@ def lit_scene(
     scene = scene.changed(
         objects=tuple(_plain(thing, areas.get(thing.name)) for thing in scene.objects)
     )
+    off_axis_deg = _OFF_AXIS_DEG.get(name, _USUAL_OFF_AXIS_DEG)
     return picture(_seen(scene, off_axis_deg), width=WIDTH, height=HEIGHT)
 
 
@@ -88,7 +91,7 @@ def _seen(scene: ll.Scene, off_axis_deg: float) -> ll.Scene:
     """Return ``scene`` with a camera that sees all of the lamp, as large as it can be."""
     corners = corners_mm(scene)
     target = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
-    off, turned = np.radians(off_axis_deg), np.radians(TURNED_DEG)
+    off, turned = np.radians(off_axis_deg), np.radians(_TURNED_DEG)
     aside = np.array([np.cos(turned), np.sin(turned), 0.0]) * np.sin(off)
     back = aside + np.array([0.0, 0.0, np.cos(off)])
     eye = target + _DISTANCE_MM * back

@@ -34,6 +34,7 @@ import numpy.typing as npt
 import path_method
 import unlit
 import walks
+from lit_scene import LAMPS
 from machine import machine, machine_line
 
 import lamplit as ll
@@ -52,7 +53,7 @@ def main() -> None:
     parser.add_argument("--triangles", type=int, nargs="*", default=[100_000, 1_000_000, 5_000_000])
     own = parser.add_argument_group("lit")
     own.add_argument("--quick", action="store_true", help="small and short, into build/lit-quick/")
-    own.add_argument("--lamps", nargs="*", choices=tuple(lit.LAMPS), default=tuple(lit.LAMPS))
+    own.add_argument("--lamps", nargs="*", choices=tuple(LAMPS), default=lit.USUAL)
     own.add_argument("--methods", nargs="*", default=lit.METHODS, help="of Lamplit; path first")
     own.add_argument("--long", type=float, help="core seconds of the pictures' second line")
     options = parser.parse_args()
