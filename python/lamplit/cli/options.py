@@ -13,7 +13,9 @@ import typer
 class Method(str, Enum):
     """The transports there are."""
 
+    auto = "auto"
     path = "path"
+    lit = "lit"
     hall = "hall"
 
 

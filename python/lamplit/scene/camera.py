@@ -89,8 +89,10 @@ Camera: TypeAlias = Annotated[
 class ImageSettings(Table):
     """Method, size, sampling, and the wavelengths that are followed."""
 
-    method: Literal["path", "hall"] = Field(
-        default="path", description="physical light transport, or the founding method"
+    method: Literal["auto", "path", "lit", "hall"] = Field(
+        default="auto",
+        description="physical light transport: path, or lit, which looks for small lights behind "
+        "optics; auto: lit where an object shines; hall: the founding method",
     )
     width: int = Field(default=640, ge=1, le=16384, description="pixels")
     height: int = Field(default=400, ge=1, le=16384, description="pixels")
@@ -102,12 +104,12 @@ class ImageSettings(Table):
     )
     error: Annotated[Positive, Field(le=1.0)] | None = Field(
         default=None,
-        description="path: standard error of a pixel's luminance, as a share, to sample down to",
+        description="path, lit: standard error of a pixel's luminance, as a share, to sample down to",
     )
     sampling: Literal["grid", "sobol"] = Field(
         default="grid",
         description="hall: an even grid in each pixel, or scrambled Sobol points: no moiré; "
-        "path: always Sobol",
+        "others: always Sobol",
     )
     filter: Literal["box", "tent", "gaussian"] = Field(
         default="gaussian",

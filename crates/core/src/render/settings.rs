@@ -9,7 +9,7 @@ use super::RenderError;
 use crate::film::Film;
 use crate::sampling::{PixelFilter, PixelSequence};
 use crate::scene::Scene;
-use crate::transport::{Guide, HallSettings, PathSettings};
+use crate::transport::{Guide, HallSettings, Part, PathSettings};
 
 /// How light is followed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,7 +18,8 @@ pub enum Method {
     Hall(HallSettings),
     /// Unbiased path transport.
     Path(PathSettings),
-    /// The same, with walks that know where light comes from.
+    /// The same, for light that is small and behind optics: what is seen in mirrors and through glass
+    /// is exposed apart from the rest, whose walks know where light comes from.
     Lit(PathSettings),
 }
 
@@ -82,6 +83,14 @@ impl RenderSettings {
             return Err(RenderError::Counts { pixels, counts: counts.len() });
         }
         Ok(())
+    }
+
+    /// What is exposed by itself, each on a film of its own.
+    pub(super) fn parts(&self) -> &'static [Part] {
+        match self.method {
+            Method::Hall(_) | Method::Path(_) => &[Part::All],
+            Method::Lit(_) => &[Part::Specular, Part::Scattered],
+        }
     }
 
     pub(super) fn new_film(&self, scene: &Scene) -> Film {

@@ -8,7 +8,7 @@ use crate::math::DVec3;
 /// How many arrivals one lobe stands for, at least, on average.
 const ARRIVALS_PER_LOBE: usize = 10;
 /// The most lobes of a region.
-const MOST_LOBES: usize = 24;
+pub(super) const MOST_LOBES: usize = 24;
 /// Rounds of Lloyd's algorithm, and of the fit of a spread.
 const ROUNDS: usize = 6;
 /// The narrowest lobe's s².

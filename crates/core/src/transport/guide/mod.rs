@@ -28,6 +28,7 @@ use super::tally::Tally;
 use crate::math::DVec3;
 use crate::sampling::{pick, PixelSequence};
 use crate::scene::Scene;
+use fit::MOST_LOBES;
 use lobe::Lobe;
 use tree::Tree;
 
@@ -41,6 +42,8 @@ const MOST_PATHS: u32 = 1 << 15;
 /// The most arrivals of a region, and the fewest that one can learn from.
 const MOST: usize = 400;
 const FEWEST: usize = 16;
+/// A lobe is chosen as if this share of the largest answer were added to its own.
+const MISJUDGED: f64 = 0.05;
 
 /// Light that was seen to arrive where a walk turns at random.
 #[derive(Clone, Copy, Debug)]
@@ -73,39 +76,62 @@ pub struct Guide {
 #[derive(Clone, Debug)]
 pub struct Region {
     lobes: Vec<Lobe>,
-    /// The sums of the lobes' shares up to and with each.
-    sums: Vec<f64>,
+    /// Their shares of the light, together 1.
+    shares: Vec<f64>,
 }
 
 impl Region {
     fn of(arrivals: &[Arrival]) -> Self {
         if arrivals.len() < FEWEST {
-            return Self { lobes: Vec::new(), sums: Vec::new() };
+            return Self { lobes: Vec::new(), shares: Vec::new() };
         }
-        let (lobes, shares): (Vec<_>, Vec<_>) = fit::lobes(arrivals).into_iter().unzip();
-        let mut sum = 0.0;
-        let sums = shares.into_iter().map(|share: f64| {
-            sum += share;
-            sum
-        });
-        Self { sums: sums.collect(), lobes }
+        let (lobes, shares) = fit::lobes(arrivals).into_iter().unzip();
+        Self { lobes, shares }
     }
 
-    /// A direction from `place` towards light, for `u` uniform in the unit cube.
-    pub fn sample(&self, place: DVec3, [u, v, w]: [f64; 3]) -> DVec3 {
-        let (lobe, _) = pick(&self.sums, u);
-        self.lobes[lobe].sample(place, [v, w])
+    /// The light at `place`, of which a vertex there passes on what `answer` says by direction.
+    pub fn answered(&self, place: DVec3, answer: impl Fn(DVec3) -> f64) -> Answered<'_> {
+        let mut sums = [0.0; MOST_LOBES];
+        let mut most = 0.0_f64;
+        for (sum, lobe) in sums.iter_mut().zip(&self.lobes) {
+            *sum = answer(lobe.origin.from(place));
+            most = most.max(*sum);
+        }
+        // A wide lobe may have what is answered beside its middle.
+        let (floor, mut total) = (MISJUDGED * most.max(f64::MIN_POSITIVE), 0.0);
+        for (sum, share) in sums.iter_mut().zip(&self.shares) {
+            total += share * (*sum + floor);
+            *sum = total;
+        }
+        Answered { region: self, place, sums }
+    }
+}
+
+/// The light of a region, weighted by what becomes of it at a vertex.
+pub struct Answered<'a> {
+    region: &'a Region,
+    place: DVec3,
+    /// The sums of the lobes' weights up to and with each.
+    sums: [f64; MOST_LOBES],
+}
+
+impl Answered<'_> {
+    /// A direction towards light, for `u` uniform in the unit cube.
+    pub fn sample(&self, [u, v, w]: [f64; 3]) -> DVec3 {
+        let (lobe, _) = pick(&self.sums[..self.region.lobes.len()], u);
+        self.region.lobes[lobe].sample(self.place, [v, w])
     }
 
     /// The density of `sample`, per steradian.
-    pub fn pdf(&self, place: DVec3, direction: DVec3) -> f64 {
+    pub fn pdf(&self, direction: DVec3) -> f64 {
         let mut before = 0.0;
-        let parts = self.lobes.iter().zip(&self.sums).map(|(lobe, sum)| {
+        let parts = self.region.lobes.iter().zip(&self.sums).map(|(lobe, sum)| {
             let share = sum - before;
             before = *sum;
-            share * lobe.pdf(place, direction)
+            share * lobe.pdf(self.place, direction)
         });
-        parts.sum::<f64>() / before
+        let sum: f64 = parts.sum();
+        sum / before
     }
 }
 

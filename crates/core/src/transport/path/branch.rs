@@ -23,6 +23,8 @@ pub(super) struct Branch {
     pub depth: u32,
     /// How many times its tree has been split above it.
     pub splits: u32,
+    /// Whether it has turned at random.
+    pub has_scattered: bool,
     /// How it got its direction.
     pub came_by: CameBy,
     /// How much more light may come against `ray` than its throughput makes one expect: it was aimed
@@ -64,8 +66,18 @@ impl Branch {
     /// The branch that every other comes from.
     pub fn from_eye((ray, interior): (Ray, Interior), sampler: PixelSampler) -> Self {
         let (throughput, came_by) = (SampledSpectrum::ONE, CameBy::OneWay);
-        let (way, depth, splits, promise) = (0.0, 0, 0, 1.0);
-        Self { ray, throughput, interior, sampler, way, depth, splits, came_by, promise }
+        Self {
+            ray,
+            throughput,
+            interior,
+            sampler,
+            way: 0.0,
+            depth: 0,
+            splits: 0,
+            has_scattered: false,
+            came_by,
+            promise: 1.0,
+        }
     }
 
     /// Go on from a mirror or a smooth interface.

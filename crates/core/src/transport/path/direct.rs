@@ -12,10 +12,10 @@ use std::f64::consts::PI;
 use crate::math::{DVec3, Ray};
 use crate::scene::BodyId;
 use crate::spectrum::SampledSpectrum;
-use crate::transport::guide::{Arrival, Region};
+use crate::transport::guide::{Answered, Arrival};
 
 use super::branch::{Branch, CameBy};
-use super::purpose::{Carried, Purpose};
+use super::purpose::{Carried, Part, Purpose};
 use super::vertex::Vertex;
 use super::{Meeting, PathWalk};
 
@@ -32,13 +32,13 @@ const GUIDED: f64 = 0.5;
 struct Aims<'a> {
     background: f64,
     guided: f64,
-    region: Option<&'a Region>,
+    light: Option<Answered<'a>>,
 }
 
 impl<'a> Aims<'a> {
     /// What to draw from if a uniform `technique`, beyond the background's share, is for learned light.
-    fn guide(&self, technique: f64) -> Option<&'a Region> {
-        self.region.filter(|_| technique < self.background + self.guided)
+    fn guide(&self, technique: f64) -> Option<&Answered<'a>> {
+        self.light.as_ref().filter(|_| technique < self.background + self.guided)
     }
 }
 
@@ -48,6 +48,7 @@ impl<'a> PathWalk<'a> {
     pub(super) fn leave(&mut self, branch: &Branch) {
         let (scene, wavelengths) = (self.scene, self.wavelengths);
         match &mut self.purpose {
+            Purpose::Eye(eye) if eye.part == Part::Scattered && !branch.has_scattered => {}
             Purpose::Eye(eye) => {
                 scene.background.arriving(&branch.ray, wavelengths, |group, radiance| {
                     eye.gathered.add(scene, wavelengths, group, branch.throughput * radiance);
@@ -62,7 +63,7 @@ impl<'a> PathWalk<'a> {
         let Some(number) = self.scene.emitters.of_body(meeting.hit.body) else {
             return;
         };
-        if !self.purpose.looks_for_light() {
+        if !self.purpose.counts(branch.has_scattered) {
             return;
         }
         let emitters = &self.scene.emitters;
@@ -93,15 +94,18 @@ impl<'a> PathWalk<'a> {
     /// Turn a branch at a vertex, if it goes on: ∫ f L |cos θ| dω by one direction and one look at
     /// the emitters.
     pub(super) fn scatter(&mut self, branch: &mut Branch, vertex: &Vertex<'_>) -> bool {
+        if !self.purpose.scatters() {
+            return false;
+        }
         let lanes = self.lanes(branch.throughput);
         self.show_arrival(branch, vertex);
-        let aims = self.aims(vertex);
+        let aims = self.aims(vertex, &lanes);
         self.see_emitters(branch, vertex, &lanes, &aims);
         let [technique, u, v, w] = branch.sampler.next_4d();
         let drawn = if technique < aims.background {
             self.scene.background.aim(vertex.position, [u, v, w])
-        } else if let Some(region) = aims.guide(technique) {
-            Some(region.sample(vertex.position, [u, v, w]))
+        } else if let Some(light) = aims.guide(technique) {
+            Some(light.sample([u, v, w]))
         } else {
             vertex.sample(&lanes, [u, v, w])
         };
@@ -111,6 +115,7 @@ impl<'a> PathWalk<'a> {
         let own = vertex.pdf(wo, &lanes);
         let pdf = self.mixed(vertex, wo, own, &aims);
         branch.way = 0.0;
+        branch.has_scattered = true;
         branch.came_by = CameBy::Scattering { from: vertex.position, pdf };
         branch.promise = (pdf / own).min(pdf * 4.0 * PI).max(1.0);
         branch.throughput *= vertex.answer(wo) * (1.0 / pdf);
@@ -135,26 +140,27 @@ impl<'a> PathWalk<'a> {
     }
 
     /// How `scatter` aims.
-    fn aims(&self, vertex: &Vertex<'_>) -> Aims<'a> {
+    fn aims(&self, vertex: &Vertex<'_>, lanes: &SampledSpectrum) -> Aims<'a> {
         if !self.purpose.looks_for_light() {
-            return Aims { background: 0.0, guided: 0.0, region: None };
+            return Aims { background: 0.0, guided: 0.0, light: None };
         }
         let background = self.scene.background.aim_share(vertex.position);
         let region = self.purpose.guide().and_then(|guide| guide.at(vertex.position));
-        if region.is_none() {
-            return Aims { background, guided: 0.0, region };
-        }
+        let Some(region) = region else {
+            return Aims { background, guided: 0.0, light: None };
+        };
+        let light = region.answered(vertex.position, |wo| vertex.pdf(wo, lanes));
         // Where both are sure of a half, each of the three ways of drawing has a third.
         let [background, guided] =
             [(background, GUIDED), (GUIDED, background)].map(|(a, b)| a * (1.0 - b * 2.0 / 3.0));
-        Aims { background, guided, region }
+        Aims { background, guided, light: Some(light) }
     }
 
     /// The density of the directions that `scatter` draws, per steradian; `own` is the vertex's own.
     fn mixed(&self, vertex: &Vertex<'_>, wo: DVec3, own: f64, aims: &Aims<'_>) -> f64 {
         let mut pdf = own;
-        if let Some(region) = aims.region {
-            pdf += aims.guided * (region.pdf(vertex.position, wo) - own);
+        if let Some(light) = &aims.light {
+            pdf += aims.guided * (light.pdf(wo) - own);
         }
         if aims.background > 0.0 {
             let ray = Ray::endless(vertex.position, wo);

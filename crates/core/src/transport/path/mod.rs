@@ -39,7 +39,7 @@ use medium::Scattered;
 use purpose::Purpose;
 use vertex::Vertex;
 
-pub use purpose::{Carried, Eye, Receive};
+pub use purpose::{Carried, Eye, Part, Receive};
 
 /// How the walks are spent. None of these changes what the picture tends to, but `max_depth`.
 #[derive(Clone, Copy, Debug, PartialEq)]
