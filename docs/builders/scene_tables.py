@@ -19,6 +19,7 @@ _SECTIONS: dict[str, dict[str, str]] = {
     "image": {"ImageSettings": "`[image]`"},
     "display": {
         "DisplaySettings": "`[display]`",
+        "EyeSettings": "`[display.eye]`",
         "CustomDisplay": "`space = { primaries_xy, white_xy, gamma }`",
         "IccDisplay": "`space = { icc }`",
     },
