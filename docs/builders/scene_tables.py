@@ -116,6 +116,7 @@ _FORMS = {
     "Reflector": "reflector",
     "Radiator": "`{ source, luminance_cd_m2 }`",
     "CustomDisplay": "a table",
+    "EyeSettings": "a table",
     "CosineDistribution": "`{ cosine_exponent }`",
     "FileDistribution": "`{ file, axis, up }`",
     "Lacquer": "[a table](#finish)",

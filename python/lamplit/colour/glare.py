@@ -20,6 +20,9 @@ Array = NDArray[np.float64]
 #: Within so many pixels of the point, scatter is integrated over so many places along a pixel's
 #: side; further out it is nearly straight within a pixel (1/θ²: 0.5 % at most).
 _NEAR, _PLACES = 6, 24
+#: In the point's own pixel the places crowd towards the point, by this power of e: scatter changes
+#: within 0.1°, however wide the pixel is.
+_CROWDED = 8.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,15 +72,19 @@ def spread_weights(eye: Eye, rows: int, columns: int, pitch: float) -> Array:
     term f_β of the eye's image has a closed integral over a rectangle, the same as that of the
     solid angle it is seen under.
     """
-    weights = _scatter(eye, rows, columns, pitch)
-    y, x = _edges(rows, pitch), _edges(columns, pitch)
+    y, x = (pitch * np.arange(count, dtype=np.float64) for count in (rows, columns))
+    scatter = pitch**2 * _scatter_per_area(eye, y, x)
+    weights = scatter.copy()
+    y, x = (np.append(at - 0.5 * pitch, at[-1] + 0.5 * pitch) for at in (y, x))
     for share, width in eye.image_terms:
         corners = _within(y[:, None], x[None, :], width)
         weights += share * np.diff(np.diff(corners, axis=0), axis=1)
     near = (min(rows, _NEAR), min(columns, _NEAR))
-    fine = _scatter(eye, *near, pitch, places=_PLACES)
-    parts = fine.reshape(near[0], _PLACES, near[1], _PLACES)
-    weights[: near[0], : near[1]] += parts.sum(axis=(1, 3)) - _scatter(eye, *near, pitch)
+    (y, dy), (x, dx) = _places(near[0], pitch), _places(near[1], pitch)
+    fine = (_scatter_per_area(eye, y, x) * dy[:, None] * dx[None, :]).reshape(
+        near[0], _PLACES, near[1], _PLACES
+    )
+    weights[: near[0], : near[1]] += fine.sum(axis=(1, 3)) - scatter[: near[0], : near[1]]
     return weights
 
 
@@ -93,20 +100,22 @@ def _within(y: Array | float, x: Array | float, width: float) -> Array:
     return np.asarray(np.arctan(x * y / (width * reach)) / (2.0 * np.pi), dtype=np.float64)
 
 
-def _scatter(eye: Eye, rows: int, columns: int, pitch: float, *, places: int = 1) -> Array:
-    """Return the scatter into pixels, or into ``places`` by ``places`` parts of each of them."""
-    y, x = _middles(rows, pitch, places), _middles(columns, pitch, places)
+def _scatter_per_area(eye: Eye, y: Array, x: Array) -> Array:
+    """Return the scatter at the places ``y`` by ``x`` of the plane at distance 1, per its area."""
     square = np.square(y)[:, None] + np.square(x)[None, :]
     angles_deg = np.degrees(np.arctan(np.sqrt(square)))
-    return eye.scatter_per_sr(angles_deg) * (pitch / places) ** 2 / (1.0 + square) ** 1.5
+    return eye.scatter_per_sr(angles_deg) / (1.0 + square) ** 1.5
 
 
-def _middles(pixels: int, pitch: float, places: int) -> Array:
-    """Return where the middles of the parts of pixels lie, from the middle of the first."""
-    at = (np.arange(pixels * places, dtype=np.float64) + 0.5) / places
-    return pitch * (at - 0.5)
+def _places(pixels: int, pitch: float) -> tuple[Array, Array]:
+    """Return places along the sides of pixels, from the point's on, and the lengths they stand for.
 
-
-def _edges(pixels: int, pitch: float) -> Array:
-    """Return where the edges of pixels lie, from the middle of the first."""
-    return pitch * (np.arange(pixels + 1, dtype=np.float64) - 0.5)
+    Those of the point's own pixel lie on one side of it and stand for both.
+    """
+    steps = (np.arange(_PLACES, dtype=np.float64) + 0.5) / _PLACES
+    even = np.arange(pixels, dtype=np.float64)[:, None] + steps - 0.5
+    lengths = np.full_like(even, 1.0 / _PLACES)
+    even[0] = 0.5 * np.expm1(_CROWDED * steps) / np.expm1(_CROWDED)
+    lengths[0] = np.exp(_CROWDED * steps)
+    lengths[0] /= lengths[0].sum()
+    return pitch * even.ravel(), pitch * lengths.ravel()

@@ -15,24 +15,24 @@ Array = NDArray[np.float64]
 
 #: Perceptually uniform, readable without colour vision, and of colours that no rear lamp has.
 _MAP = "viridis"
-#: The most decades on the scale, and the share of the pixels that its top reaches.
-_DECADES, _REACHED_PERCENT = 5.0, 99.99
+#: The scale spans these shares of the pixels, and no more decades than that.
+_PERCENTS, _DECADES = (1.0, 99.99), 7.0
 #: The picture is magnified, whole times, until it is this wide.
 _LEAST_WIDTH = 560
-_MARGIN, _HEAD, _BAR, _LABELS = 16, 44, 18, 76
+_MARGIN, _HEAD, _BAR, _LABELS = 16, 44, 18, 96
 
 
 def scale_limits(luminance: Array) -> tuple[float, float]:
-    """Return the ends of the scale in cd/m²: all that is not black, five decades at most.
+    """Return the ends of the scale in cd/m²: the 1 and 99.99 % percentiles of what is not black.
 
-    The top is the 99.99 % percentile. A picture of one luminance gets a decade about it, a black
-    one that below 1 cd/m².
+    The scale has one decade at least, about the middle of these, and seven at most, below the top.
+    That of a black picture ends at 1 cd/m².
     """
     lit = luminance[np.isfinite(luminance) & (luminance > 0.0)]
     if not lit.size:
         return 0.1, 1.0
-    top = float(np.percentile(lit, _REACHED_PERCENT))
-    low = max(float(lit.min()), top / 10.0**_DECADES)
+    low, top = (float(value) for value in np.percentile(lit, _PERCENTS))
+    low = max(low, top / 10.0**_DECADES)
     if low < top / 10.0:
         return low, top
     middle = math.sqrt(low * top)
@@ -42,15 +42,15 @@ def scale_limits(luminance: Array) -> tuple[float, float]:
 def draw_false_colour(luminance: Array) -> tuple[Array, tuple[float, float]]:
     """Return a page, sRGB values (rows, columns, 3) in [0, 1], and the ends of its scale in cd/m².
 
-    ``luminance`` (H, W) is in cd/m². The scale is logarithmic; what is below it, black included,
-    is drawn black, and what is above it in the colour of its end.
+    ``luminance`` (H, W) is in cd/m². The scale is logarithmic; what is beyond it has the colour of
+    its end, and what has no light, or no finite luminance, is black.
     """
     from matplotlib import colormaps
     from matplotlib.colors import LogNorm
 
     low, top = scale_limits(luminance)
-    norm = LogNorm(low, top, clip=False)
-    colours = colormaps[_MAP].with_extremes(under="black", bad="black")
+    norm = LogNorm(low, top, clip=True)
+    colours = colormaps[_MAP].with_extremes(bad="black")
     height, width = luminance.shape
     times = max(1, math.ceil(_LEAST_WIDTH / width))
     shown_width, shown_height = width * times, height * times
@@ -61,8 +61,8 @@ def draw_false_colour(luminance: Array) -> tuple[Array, tuple[float, float]]:
         margin + shown_width + margin + bar + labels, head + bar_height + margin, unit=unit
     )
     sheet.title(margin, head, "Luminance", _heading(luminance))
-    lit = np.where(luminance > 0.0, luminance, 0.0)
-    pixels = colours(norm(np.ma.masked_less_equal(lit, 0.0)))[..., :3]
+    lit = np.isfinite(luminance) & (luminance > 0.0)
+    pixels = colours(norm(np.ma.masked_where(~lit, luminance)))[..., :3]
     axes = sheet.axes(margin, head, shown_width, shown_height)
     show_pixels(axes, np.asarray(pixels, dtype=np.float64), (shown_width, shown_height))
     _draw_bar(sheet, (2 * margin + shown_width, head, bar, bar_height), norm, colours)
@@ -72,7 +72,7 @@ def draw_false_colour(luminance: Array) -> tuple[Array, tuple[float, float]]:
 def _heading(luminance: Array) -> str:
     good = luminance[np.isfinite(luminance)]
     mean, most = (float(good.mean()), float(good.max())) if good.size else (0.0, 0.0)
-    return f"mean {mean:.3g} cd/m², largest {most:.3g} cd/m²"
+    return f"mean {luminance_label(mean)} cd/m², largest {luminance_label(most)} cd/m²"
 
 
 def _draw_bar(sheet: Sheet, place: tuple[int, int, int, int], norm: Any, colours: Any) -> None:
@@ -94,9 +94,10 @@ def _draw_bar(sheet: Sheet, place: tuple[int, int, int, int], norm: Any, colours
 
 
 def luminance_label(value: float, _: object = None) -> str:
-    """Return a number as a scale has it, thousands apart.
+    """Return three digits of a luminance, thousands apart.
 
-    >>> luminance_label(20000.0), luminance_label(0.05)
-    ('20 000', '0.05')
+    >>> luminance_label(20000.0), luminance_label(0.05), luminance_label(2714893.0)
+    ('20 000', '0.05', '2 710 000')
     """
-    return f"{value:,.0f}".replace(",", " ") if value >= 1.0 else f"{value:.6g}"
+    shown = float(f"{value:.3g}")
+    return f"{shown:,.0f}".replace(",", " ") if shown >= 1000.0 else f"{shown:g}"

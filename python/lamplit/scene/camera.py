@@ -230,4 +230,4 @@ class DisplaySettings(Table):
     glare: bool = Field(
         default=False, description="also draw the picture with the glare of the eye"
     )
-    eye: EyeSettings = Field(default=EyeSettings(), description="whose glare it is")
+    eye: EyeSettings = Field(default_factory=EyeSettings, description="whose glare it is")
