@@ -13,8 +13,8 @@ from machine import machine_line
 
 import lamplit as ll
 from lamplit.colour.picture import to_picture
-from lamplit.report.view import display_of, scene_white_xy
 from lamplit.report.png import write_png
+from lamplit.report.view import display_of, scene_white_xy
 
 _COLOURS = {"lamplit": "#c1121f", "scalar_spectral": "#8d99ae", "llvm_ad_spectral": "#33658a"}
 #: Pixels of black between pictures.
