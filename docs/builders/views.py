@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 OR MIT
-"""One lit lamp, developed in four ways: the figure of docs/picture.md."""
+"""One lit lamp, looked at in four ways: the figures of docs/picture.md."""
 
 from __future__ import annotations
 
@@ -17,40 +17,32 @@ from lamplit.report.progress import Progress
 from lamplit.report.sheet import Sheet, show_pixels
 from lamplit.report.view import View
 
-_SIZE = {"image.width": 420, "image.height": 262, "image.samples": 400}
+_WIDTH, _HEIGHT, _SAMPLES = 420, 262, 400
 _GAP, _HEAD = 12, 48
 
 
-def draw_views(path: Path) -> None:
-    """Draw a lit lamp: linear, with the photographic tone, with glare, and in false colours."""
+def draw_views(views: Path, false_colour: Path) -> None:
+    """Draw a lit lamp: linear, with the photographic tone, with glare; and in false colours."""
+    size = {"image.width": _WIDTH, "image.height": _HEIGHT, "image.samples": _SAMPLES}
     with tempfile.TemporaryDirectory() as folder:
-        scene = ll.load_scene(write_lamp("p21w", folder, {"lit": "true"}), overrides=_SIZE)
+        scene = ll.load_scene(write_lamp("p21w", folder, {"lit": "true"}), overrides=size)
         with Progress("views") as progress:
             image = ll.render(scene, progress=progress)
     view = View.of(scene)
     toned = replace(view, settings=view.settings.model_copy(update={"tone": "photographic"}))
     exposure = automatic_exposure(image.xyz, view)
     glare = eye_glare(image.xyz, view)
-    page, _ = draw_false_colour(image.luminance_cd_m2)
     shown = (
-        ("Linear", "600 cd/m² is white", develop_xyz(image.xyz, view).picture.encoded),
-        ("Photographic", "all fits the display", develop_xyz(image.xyz, toned).picture.encoded),
-        (
-            "Glare",
-            "linear, an eye of 35",
-            develop_xyz(glare.xyz, view, exposure=exposure).picture.encoded,
-        ),
+        ("Linear", "600 cd/m² is white", develop_xyz(image.xyz, view)),
+        ("Photographic", "the same white", develop_xyz(image.xyz, toned)),
+        ("Glare", "linear, an eye of 35", develop_xyz(glare.xyz, view, exposure=exposure)),
     )
-    width, height = _SIZE["image.width"], _SIZE["image.height"]
-    rows, columns = page.shape[:2]
-    sheet = Sheet(2 * width + 3 * _GAP, 2 * (height + _HEAD) + _GAP, unit=1.0)
-    for at, (name, explanation, pixels) in enumerate(shown):
-        left, top = _GAP + at % 2 * (width + _GAP), _HEAD + at // 2 * (height + _HEAD)
-        sheet.title(left, top, name, explanation)
-        show_pixels(sheet.axes(left, top, width, height), pixels, (width, height))
-    left, top = 2 * _GAP + width, height + _HEAD
-    tall = height + _HEAD
-    wide = min(width, round(tall * columns / rows))
-    size = (wide, round(wide * rows / columns))
-    show_pixels(sheet.axes(left, top, *size), page, size)
-    write_png(path, sheet.pixels(), Display.named("srgb"))
+    sheet = Sheet(3 * _WIDTH + 4 * _GAP, _HEIGHT + _HEAD + _GAP, unit=1.0)
+    for at, (name, explanation, developed) in enumerate(shown):
+        left = _GAP + at * (_WIDTH + _GAP)
+        sheet.title(left, _HEAD, name, explanation)
+        axes = sheet.axes(left, _HEAD, _WIDTH, _HEIGHT)
+        show_pixels(axes, developed.picture.encoded, (_WIDTH, _HEIGHT))
+    write_png(views, sheet.pixels(), Display.named("srgb"))
+    page, _ = draw_false_colour(image.luminance_cd_m2)
+    write_png(false_colour, page, Display.named("srgb"))

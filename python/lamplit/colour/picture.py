@@ -80,7 +80,8 @@ def to_picture(
     linear /= white_luminance_cd_m2
     shown = linear
     if brightest_luminance_cd_m2 is not None:
-        shown = photographic(shown, brightest_luminance_cd_m2 / white_luminance_cd_m2)
+        reach = brightest_luminance_cd_m2 / white_luminance_cd_m2
+        shown = photographic(shown, reach, display)
     if gamut == "map":
         shown = map_to_gamut(shown, display)[0]
     outside = outside_gamut(linear)

@@ -11,15 +11,17 @@ Reproduction for Digital Images", SIGGRAPH 2002, eqs. (1) and (2).
 from __future__ import annotations
 
 import math
-from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Tone = Literal["linear", "photographic"]
+from lamplit.colour.display import Display
+from lamplit.colour.gamut import oklab_to_rgb, rgb_to_oklab
 
 #: Middle grey, as a share of white: up to here the curve leaves light as it is.
 MIDDLE_GREY = 0.18
+#: So many decades above white, every colour is white.
+PALE_DECADES = 5.0
 #: Pixels darker than this share of the mean say nothing about exposure; black has no logarithm.
 _DARK = 1e-5
 
@@ -61,16 +63,27 @@ def shoulder_rate(brightest: float) -> float:
     return 0.5 * (low + high)
 
 
-def photographic(linear: ArrayLike, brightest: float) -> NDArray[np.float64]:
-    """Return linear RGB (…, 3), relative to white, with `tone_curve` on its largest component.
+def photographic(linear: ArrayLike, brightest: float, display: Display) -> NDArray[np.float64]:
+    """Return linear RGB (…, 3) of ``display``, relative to white, with the tone curve.
 
-    All three components are multiplied by f(m)/m, m the largest: chromaticity stays, and so does
-    the hue, in Oklab exactly, since Oklab's a and b scale together with the cube root of light.
+    `tone_curve` acts on the largest component m, and the other two go along: chromaticity stays.
+    Above white, chroma then gives way by the share (log₁₀ m/5)², up to all of it five decades above
+    white, as on film; else a saturated colour, dim on any display, would hide how bright it is. The
+    largest component stays f(m), and Oklab's hue is kept exactly: a, b shrink together, and all of
+    L, a, b scale with the cube root of light.
     """
     rgb = np.asarray(linear, dtype=np.float64)
     largest = np.maximum(rgb.max(axis=-1, keepdims=True), 0.0)
     shown = tone_curve(largest, brightest)
-    return rgb * np.divide(shown, largest, out=np.ones_like(shown), where=largest > 0.0)
+    toned = rgb * np.divide(shown, largest, out=np.ones_like(shown), where=largest > 0.0)
+    bright = largest[..., 0] > 1.0
+    decades = np.log10(largest[bright])
+    pale = np.minimum(np.square(decades / PALE_DECADES), 1.0)
+    lab = rgb_to_oklab(toned[bright], display) * (1.0 - pale)
+    lab[:, :1] += pale * np.cbrt(shown[bright])
+    paled = oklab_to_rgb(lab, display)
+    toned[bright] = paled * (shown[bright] / paled.max(axis=-1, keepdims=True))
+    return toned
 
 
 def key_luminance(luminance: ArrayLike) -> float:
