@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -91,6 +92,18 @@ def test_the_picture_itself_is_not_changed() -> None:
     before = xyz.copy()
     with_glare(xyz, EYE, 1e-3)
     np.testing.assert_array_equal(xyz, before)
+
+
+def test_it_takes_the_memory_that_is_reckoned_with() -> None:
+    """210 bytes a pixel, in the estimate of a render."""
+    xyz = np.ones((250, 400, 3))
+    tracemalloc.start()
+    try:
+        with_glare(xyz, EYE, 1e-3)
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert 0.7 * 210.0 < peak / 1e5 < 1.05 * 210.0
 
 
 def test_a_black_picture_stays_black() -> None:
