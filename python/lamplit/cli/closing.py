@@ -104,5 +104,5 @@ def _heading(image: Image) -> str:
 
 def _exposure(display: Mapping[str, Any]) -> str:
     white, brightest = (display[f"{name}_luminance_cd_m2"] for name in ("white", "brightest"))
-    reach = "" if brightest is None else f", all up to {brightest:.4g} cd/m² is bent into it"
+    reach = "" if brightest is None else f", tone curve up to {brightest:.4g} cd/m² of white"
     return f"{white:.4g} cd/m²{reach}"
