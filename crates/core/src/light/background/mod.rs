@@ -59,6 +59,15 @@ impl Background {
         Self { base, base_group, soft_boxes, suns, aim }
     }
 
+    /// Whether it sends nothing.
+    pub fn is_dark(&self) -> bool {
+        let Base::Constant(even) = &self.base else {
+            return false;
+        };
+        let is_zero = |phase| even.at(SampledWavelengths { phase }).max() <= 0.0;
+        self.soft_boxes.is_empty() && self.suns.is_empty() && (0..even.phases()).all(is_zero)
+    }
+
     /// The spectral radiance that arrives against `ray`: the sum of all that
     /// [`arriving`](Self::arriving) tells.
     pub fn radiance(&self, ray: &Ray, wavelengths: SampledWavelengths) -> SampledSpectrum {

@@ -101,11 +101,14 @@ impl<'a> PathWalk<'a> {
         self.show_arrival(branch, vertex);
         if branch.depth == 0 && vertex.is_boundary && self.purpose.leaves_rough() {
             branch.is_left = true;
+            if !self.survives_unseen(branch) {
+                return false;
+            }
         }
         if vertex.is_boundary {
             self.show(branch, vertex);
         }
-        let aims = self.aims(vertex, &lanes);
+        let aims = self.aims(branch, vertex, &lanes);
         self.see_emitters(branch, vertex, &lanes, &aims);
         let [technique, u, v, w] = branch.sampler.next_4d();
         let drawn = if technique < aims.background {
@@ -145,6 +148,18 @@ impl<'a> PathWalk<'a> {
         }
     }
 
+    /// Whether a branch goes on whose emitters are left to others. Under a dark background it brings no
+    /// light, and a few of them stand for all: for the ledger.
+    fn survives_unseen(&self, branch: &mut Branch) -> bool {
+        const FEW: f64 = 1.0 / 16.0;
+        if !self.scene.background.is_dark() {
+            return true;
+        }
+        let [u, ..] = branch.sampler.next_4d();
+        branch.throughput *= 1.0 / FEW;
+        u < FEW
+    }
+
     /// Show what the camera sees of a walk from a light at a vertex, along a straight way.
     fn show(&mut self, branch: &mut Branch, vertex: &Vertex<'_>) {
         let Some(Screen { width, height }) = self.purpose.screen() else {
@@ -171,12 +186,13 @@ impl<'a> PathWalk<'a> {
     }
 
     /// How `scatter` aims.
-    fn aims(&self, vertex: &Vertex<'_>, lanes: &SampledSpectrum) -> Aims<'a> {
+    fn aims(&self, branch: &Branch, vertex: &Vertex<'_>, lanes: &SampledSpectrum) -> Aims<'a> {
         if !self.purpose.looks_for_light() {
             return Aims { background: 0.0, guided: 0.0, light: None };
         }
         let background = self.scene.background.aim_share(vertex.position);
-        let region = self.purpose.guide().and_then(|guide| guide.at(vertex.position));
+        let guide = self.purpose.guide().filter(|_| !branch.is_left);
+        let region = guide.and_then(|guide| guide.at(vertex.position));
         let Some(region) = region else {
             return Aims { background, guided: 0.0, light: None };
         };
