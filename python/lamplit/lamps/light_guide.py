@@ -185,10 +185,8 @@ def _tables(p: Parameters, layout: _Layout) -> list[Table]:
         studio.hall(3e-3),
         *studio.laboratory([{"name": "position", "rule": "un-r148/R1"}]),
         *studio.surroundings(190.0, 30.0, 120.0),
-        studio.soft_box(
-            2600.0, (-265.0, 22.0, 1000.0), (420.0, 90.0), edge_softness=0.2, up=(0.12, 1.0, 0.0)
-        ),
-        studio.soft_box(6000.0, (100.0, 1000.0, 600.0), (1100.0, 300.0)),
+        studio.soft_box(1200.0, (-300.0, 350.0, 1000.0), (900.0, 350.0)),
+        studio.soft_box(1500.0, (100.0, 1000.0, 600.0), (1400.0, 700.0)),
         studio.point_light("key", "D65", 4000.0, (-300.0, 700.0, 1200.0)),
         *(_lights(p, layout) if p.lit else []),
         *_materials(p),

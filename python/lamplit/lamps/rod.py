@@ -38,8 +38,8 @@ class NotchedRod:
     def notches(self) -> tuple[Floats, Floats]:
         """Return the middles (m,) and the depths (m,) of the notches, along x."""
         count = int((self.length - 2.0 * self.pitch) / self.pitch) + 1
-        x = (np.arange(count) - 0.5 * (count - 1)) * self.pitch
-        way = 0.5 + x / self.length
+        x: Floats = (np.arange(count, dtype=np.float64) - 0.5 * (count - 1)) * self.pitch
+        way: Floats = 0.5 + x / self.length
         if self.fed_from_both_ends:
             way = 1.0 - np.abs(2.0 * way - 1.0)
         return x, self.depth * (_FIRST_NOTCH + (1.0 - _FIRST_NOTCH) * way)
