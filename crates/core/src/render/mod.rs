@@ -3,6 +3,7 @@
 
 mod allocation;
 mod features;
+mod learning;
 mod pass;
 mod photometer;
 mod settings;
@@ -15,11 +16,12 @@ use thiserror::Error;
 
 use crate::film::Film;
 use crate::scene::{Interior, Scene};
-use crate::transport::Tally;
+use crate::transport::{Guide, Part, Tally};
 use allocation::{Allocation, Pilot};
 use pass::Pass;
 
 pub use features::{features, Features};
+pub use learning::learn;
 pub use photometer::{Batch, MeasureError, Photometer, BATCHES};
 pub use settings::{Method, RenderSettings, DEEPEST};
 
@@ -54,6 +56,14 @@ pub enum RenderError {
         deepest: u32,
         /// What was asked for.
         asked: u32,
+    },
+    /// Not every pixel has a count of samples.
+    #[error("there are {counts} counts of samples for {pixels} pixels")]
+    Counts {
+        /// How many pixels there are.
+        pixels: usize,
+        /// How many counts there are.
+        counts: usize,
     },
     /// The threads cannot be started.
     #[error("the threads cannot be started: {0}")]
@@ -93,7 +103,11 @@ pub fn render(
     let interior = eye_interior(scene)?;
     let threads = rayon::ThreadPoolBuilder::new().num_threads(settings.threads);
     let pool = threads.stack_size(STACK).build()?;
-    pool.install(|| Ok(Rendering { scene, settings, interior, progress }.run()))
+    pool.install(|| {
+        let guide = learning::guide(scene, settings);
+        let guide = guide.as_deref();
+        Ok(Rendering { scene, settings, interior, guide, progress }.run())
+    })
 }
 
 /// The bodies that the eye is in.
@@ -106,30 +120,48 @@ struct Rendering<'a> {
     scene: &'a Scene,
     settings: &'a RenderSettings,
     interior: Interior,
+    guide: Option<&'a Guide>,
     progress: &'a Progress,
+}
+
+/// A part of the light, and the film that gathers it.
+struct Exposure {
+    part: Part,
+    film: Film,
+    /// How many samples each pixel takes in all, once that is decided.
+    limit: Option<Allocation>,
 }
 
 impl Rendering<'_> {
     fn run(&self) -> Rendered {
         let started = Instant::now();
         let samples = self.settings.samples.clone();
-        self.expect(self.pixels() * samples.len() as u64);
-        let mut film = self.settings.new_film(self.scene);
+        let new = |part: &Part| Exposure {
+            part: *part,
+            film: self.settings.new_film(self.scene),
+            limit: None,
+        };
+        let mut exposures: Vec<Exposure> = self.settings.parts().iter().map(new).collect();
         let mut tally = Tally::new(self.scene.bodies.len());
+        if let Some(counts) = &self.settings.counts {
+            for exposure in &mut exposures {
+                exposure.limit = Some(Allocation::given(counts.clone()));
+            }
+            self.expose(&mut exposures, &mut tally, samples.start..u32::MAX, None);
+            return Rendered::of(exposures, tally);
+        }
         let pilot_samples = self.pilot_samples();
         if !self.settings.adaptive || pilot_samples == samples.len() as u32 {
-            self.expose(&mut film, &mut tally, samples, self.settings.time_budget, None);
-            return Rendered { film, tally };
+            self.expose(&mut exposures, &mut tally, samples, self.settings.time_budget);
+            return Rendered::of(exposures, tally);
         }
         let rest = samples.start + pilot_samples;
-        self.expose(&mut film, &mut tally, samples.start..rest, None, None);
+        self.expose(&mut exposures, &mut tally, samples.start..rest, None);
         if !self.progress.is_cancelled() {
-            let allocation = self.allocate(&Pilot::of(&film), pilot_samples, started);
-            self.expect(allocation.total());
-            let range = rest..samples.start.saturating_add(allocation.most());
-            self.expose(&mut film, &mut tally, range, None, Some(&allocation));
+            self.allocate(&mut exposures, pilot_samples, started);
+            self.expose(&mut exposures, &mut tally, rest..u32::MAX, None);
         }
-        Rendered { film, tally }
+        Rendered::of(exposures, tally)
     }
 
     /// How many samples of every pixel the first round has: a quarter of all where their number is
@@ -146,40 +178,57 @@ impl Rendering<'_> {
     }
 
     /// Allot samples, or time, as the first round says.
-    fn allocate(&self, pilot: &Pilot, pilot_samples: u32, started: Instant) -> Allocation {
+    fn allocate(&self, exposures: &mut [Exposure], pilot_samples: u32, started: Instant) {
         let mut affordable = self.settings.samples.len() as f64;
         if let Some(budget) = self.settings.time_budget {
             let share = budget.as_secs_f64() / started.elapsed().as_secs_f64();
             affordable = affordable.min(f64::from(pilot_samples) * share);
         }
-        pilot.allocate(affordable, self.settings.target_error)
+        let films: Vec<&Film> = exposures.iter().map(|exposure| &exposure.film).collect();
+        let pilot = Pilot::of(&films);
+        let allocations = pilot.allocate(affordable, self.settings.target_error);
+        for (exposure, allocation) in exposures.iter_mut().zip(allocations) {
+            exposure.limit = Some(allocation);
+        }
     }
 
     fn pixels(&self) -> u64 {
         u64::from(self.settings.width) * u64::from(self.settings.height)
     }
 
-    fn expect(&self, samples: u64) {
-        self.progress.total.store(samples, Ordering::Relaxed);
-    }
-
-    /// Take samples of every pixel, as many of them as it is allotted or as the time allows.
+    /// Take samples of every pixel on all films, as many of them as are allotted or as the time allows.
     fn expose(
         &self,
-        film: &mut Film,
+        exposures: &mut [Exposure],
         tally: &mut Tally,
         samples: Range<u32>,
         time_budget: Option<Duration>,
-        limit: Option<&Allocation>,
     ) {
         let started = Instant::now();
+        let most = |exposure: &Exposure| {
+            let limit = exposure.limit.as_ref();
+            limit.map_or(samples.end, |limit| {
+                self.settings.samples.start.saturating_add(limit.most())
+            })
+        };
+        let end = exposures.iter().map(most).max().unwrap_or(samples.end).min(samples.end);
+        let all = |exposure: &Exposure| {
+            let each = self.pixels() * u64::from(end.saturating_sub(samples.start));
+            exposure.limit.as_ref().map_or(each, Allocation::total)
+        };
+        self.progress.total.store(exposures.iter().map(all).sum(), Ordering::Relaxed);
         let (mut next, mut length) = (samples.start, 1);
-        while next < samples.end && !self.progress.is_cancelled() {
-            let end = samples.end.min(next + length);
-            let Self { scene, settings, interior, progress } = *self;
-            let pass = Pass { scene, settings, interior, samples: next..end, limit, progress };
-            tally.add(&pass.run(film));
-            next = end;
+        while next < end && !self.progress.is_cancelled() {
+            let until = end.min(next + length);
+            let Self { scene, settings, interior, guide, progress } = *self;
+            for Exposure { part, film, limit } in &mut *exposures {
+                let (part, limit) = (*part, limit.as_ref());
+                let samples = next..until;
+                let pass =
+                    Pass { scene, settings, interior, part, samples, limit, guide, progress };
+                tally.add(&pass.run(film));
+            }
+            next = until;
             length = (length * 2).min(LONGEST_PASS);
             if let Some(budget) = time_budget {
                 let spent = started.elapsed().as_secs_f64();
@@ -192,5 +241,12 @@ impl Rendering<'_> {
                 length = length.min(affordable.div_ceil(2));
             }
         }
+    }
+}
+
+impl Rendered {
+    fn of(exposures: Vec<Exposure>, tally: Tally) -> Self {
+        let films = exposures.into_iter().map(|exposure| exposure.film).collect();
+        Self { film: Film::sum(films), tally }
     }
 }

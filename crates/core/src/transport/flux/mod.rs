@@ -17,7 +17,7 @@ use std::sync::Arc;
 use thiserror::Error;
 
 use super::ledger::Ledger;
-use super::path::{PathSettings, PathWalk};
+use super::path::{Carried, PathSettings, PathWalk};
 use super::tally::Tally;
 use crate::math::Ray;
 use crate::sampling::{Choice, PixelSampler};
@@ -153,10 +153,10 @@ impl LightSource {
     }
 }
 
-/// A part of a walk's flux that leaves the scene.
+/// A part of a walk's flux.
 pub struct Parted<'r> {
-    /// Along which ray.
-    pub ray: &'r Ray,
+    /// What became of it.
+    pub what: Carried<'r>,
     /// The light group that it is counted to.
     pub group: usize,
     /// On which wavelengths.
@@ -206,7 +206,7 @@ impl<'a> LightWalk<'a> {
         self.luminous_flux
     }
 
-    /// Walk once, and hand on what leaves the scene. The ledger of the walk's light group, of which
+    /// Walk once, and show where the light arrives and leaves. The ledger of the walk's light group, of which
     /// `ledgers` has one each, books luminous flux in units of [`luminous_flux`](Self::luminous_flux).
     pub fn walk(
         &self,
@@ -232,8 +232,8 @@ impl<'a> LightWalk<'a> {
             }
             Ok(interior) => {
                 let usual = self.usual;
-                let mut leaving = |ray: &Ray, left: SampledSpectrum| {
-                    receive(&Parted { ray, group, wavelengths, flux: left * usual });
+                let mut shown = |what: Carried<'_>, flux: SampledSpectrum| {
+                    receive(&Parted { what, group, wavelengths, flux: flux * usual });
                 };
                 let (settings, start) = (self.settings, (ray, interior));
                 let carried = (carried, booked);
@@ -243,7 +243,7 @@ impl<'a> LightWalk<'a> {
                     wavelengths,
                     sampler,
                     tally,
-                    &mut leaving,
+                    &mut shown,
                     start,
                     carried,
                 );

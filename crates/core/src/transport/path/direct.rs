@@ -7,12 +7,15 @@
 //! straight way (next-event estimation); where both find the same light, they share it by the
 //! balance heuristic.
 
+use std::f64::consts::PI;
+
 use crate::math::{DVec3, Ray};
 use crate::scene::BodyId;
 use crate::spectrum::SampledSpectrum;
+use crate::transport::guide::{Answered, Arrival};
 
 use super::branch::{Branch, CameBy};
-use super::purpose::Purpose;
+use super::purpose::{Carried, Part, Purpose};
 use super::vertex::Vertex;
 use super::{Meeting, PathWalk};
 
@@ -22,18 +25,36 @@ const MOST_SURFACES: usize = 256;
 /// How far, relative to its distance, a point of an emitter may seem to lie behind its own surface.
 const SAME_POINT: f64 = 1e-5;
 
-impl PathWalk<'_> {
+/// How often a direction is drawn towards learned light, where there is some.
+const GUIDED: f64 = 0.5;
+
+/// How often directions are drawn towards learned light, and towards a bright background.
+struct Aims<'a> {
+    background: f64,
+    guided: f64,
+    light: Option<Answered<'a>>,
+}
+
+impl<'a> Aims<'a> {
+    /// What to draw from if a uniform `technique`, beyond the background's share, is for learned light.
+    fn guide(&self, technique: f64) -> Option<&Answered<'a>> {
+        self.light.as_ref().filter(|_| technique < self.background + self.guided)
+    }
+}
+
+impl<'a> PathWalk<'a> {
     /// Add what the background sends against a branch that leaves the scene, or hand on what it
     /// carries.
     pub(super) fn leave(&mut self, branch: &Branch) {
         let (scene, wavelengths) = (self.scene, self.wavelengths);
         match &mut self.purpose {
-            Purpose::Eye(gathered) => {
+            Purpose::Eye(eye) if eye.part == Part::Scattered && !branch.has_scattered => {}
+            Purpose::Eye(eye) => {
                 scene.background.arriving(&branch.ray, wavelengths, |group, radiance| {
-                    gathered.add(scene, wavelengths, group, branch.throughput * radiance);
+                    eye.gathered.add(scene, wavelengths, group, branch.throughput * radiance);
                 });
             }
-            Purpose::Light(leaving) => leaving(&branch.ray, branch.throughput),
+            Purpose::Light(receive) => receive(Carried::Left(&branch.ray), branch.throughput),
         }
     }
 
@@ -42,7 +63,7 @@ impl PathWalk<'_> {
         let Some(number) = self.scene.emitters.of_body(meeting.hit.body) else {
             return;
         };
-        if !self.purpose.looks_for_light() {
+        if !self.purpose.counts(branch.has_scattered) {
             return;
         }
         let emitters = &self.scene.emitters;
@@ -65,20 +86,26 @@ impl PathWalk<'_> {
     }
 
     fn add_light(&mut self, group: usize, arriving: SampledSpectrum) {
-        if let Purpose::Eye(gathered) = &mut self.purpose {
-            gathered.add(self.scene, self.wavelengths, group, arriving);
+        if let Purpose::Eye(eye) = &mut self.purpose {
+            eye.gathered.add(self.scene, self.wavelengths, group, arriving);
         }
     }
 
     /// Turn a branch at a vertex, if it goes on: ∫ f L |cos θ| dω by one direction and one look at
     /// the emitters.
     pub(super) fn scatter(&mut self, branch: &mut Branch, vertex: &Vertex<'_>) -> bool {
+        if !self.purpose.scatters() {
+            return false;
+        }
         let lanes = self.lanes(branch.throughput);
-        let share = self.aim_share(vertex);
-        self.see_emitters(branch, vertex, &lanes, share);
+        self.show_arrival(branch, vertex);
+        let aims = self.aims(vertex, &lanes);
+        self.see_emitters(branch, vertex, &lanes, &aims);
         let [technique, u, v, w] = branch.sampler.next_4d();
-        let drawn = if technique < share {
+        let drawn = if technique < aims.background {
             self.scene.background.aim(vertex.position, [u, v, w])
+        } else if let Some(light) = aims.guide(technique) {
+            Some(light.sample([u, v, w]))
         } else {
             vertex.sample(&lanes, [u, v, w])
         };
@@ -86,9 +113,11 @@ impl PathWalk<'_> {
             return false;
         };
         let own = vertex.pdf(wo, &lanes);
-        let pdf = self.mixed(vertex, wo, own, share);
+        let pdf = self.mixed(vertex, wo, own, &aims);
+        branch.way = 0.0;
+        branch.has_scattered = true;
         branch.came_by = CameBy::Scattering { from: vertex.position, pdf };
-        branch.promise = (pdf / own).max(1.0);
+        branch.promise = (pdf / own).min(pdf * 4.0 * PI).max(1.0);
         branch.throughput *= vertex.answer(wo) * (1.0 / pdf);
         if !vertex.agrees(wo) {
             wo = vertex.put_right(wo);
@@ -100,24 +129,44 @@ impl PathWalk<'_> {
         pdf > 0.0
     }
 
-    /// How often `scatter` draws a direction towards what is bright in the background.
-    fn aim_share(&self, vertex: &Vertex<'_>) -> f64 {
-        if self.purpose.looks_for_light() {
-            self.scene.background.aim_share(vertex.position)
-        } else {
-            0.0
+    /// Show whoever follows a walk from a light that it arrives at a vertex.
+    fn show_arrival(&mut self, branch: &Branch, vertex: &Vertex<'_>) {
+        let weight = self.weight(branch.throughput);
+        if let Purpose::Light(receive) = &mut self.purpose {
+            let (position, direction, way) = (vertex.position, -branch.ray.direction, branch.way);
+            let arrival = Arrival { position, direction, way, weight };
+            receive(Carried::Arrived(arrival), branch.throughput);
         }
     }
 
-    /// The density of the directions that `scatter` draws, per steradian; `own` is the vertex's own,
-    /// and `share` the `aim_share` there.
-    fn mixed(&self, vertex: &Vertex<'_>, wo: DVec3, own: f64, share: f64) -> f64 {
-        if share > 0.0 {
-            let ray = Ray::endless(vertex.position, wo);
-            (1.0 - share) * own + share * self.scene.background.aim_pdf(&ray)
-        } else {
-            own
+    /// How `scatter` aims.
+    fn aims(&self, vertex: &Vertex<'_>, lanes: &SampledSpectrum) -> Aims<'a> {
+        if !self.purpose.looks_for_light() {
+            return Aims { background: 0.0, guided: 0.0, light: None };
         }
+        let background = self.scene.background.aim_share(vertex.position);
+        let region = self.purpose.guide().and_then(|guide| guide.at(vertex.position));
+        let Some(region) = region else {
+            return Aims { background, guided: 0.0, light: None };
+        };
+        let light = region.answered(vertex.position, |wo| vertex.pdf(wo, lanes));
+        // Where both are sure of a half, each of the three ways of drawing has a third.
+        let [background, guided] =
+            [(background, GUIDED), (GUIDED, background)].map(|(a, b)| a * (1.0 - b * 2.0 / 3.0));
+        Aims { background, guided, light: Some(light) }
+    }
+
+    /// The density of the directions that `scatter` draws, per steradian; `own` is the vertex's own.
+    fn mixed(&self, vertex: &Vertex<'_>, wo: DVec3, own: f64, aims: &Aims<'_>) -> f64 {
+        let mut pdf = own;
+        if let Some(light) = &aims.light {
+            pdf += aims.guided * (light.pdf(wo) - own);
+        }
+        if aims.background > 0.0 {
+            let ray = Ray::endless(vertex.position, wo);
+            pdf += aims.background * (self.scene.background.aim_pdf(&ray) - own);
+        }
+        pdf
     }
 
     /// Add what one point of the emitters sends straight to a vertex.
@@ -126,7 +175,7 @@ impl PathWalk<'_> {
         branch: &mut Branch,
         vertex: &Vertex<'_>,
         lanes: &SampledSpectrum,
-        share: f64,
+        aims: &Aims<'_>,
     ) {
         let emitters = &self.scene.emitters;
         let is_looked_for = self.purpose.looks_for_light() && !emitters.is_empty();
@@ -149,7 +198,7 @@ impl PathWalk<'_> {
         };
         let emitted = if emitter.per_n2 { emitted / (index * index) } else { emitted };
         let own = vertex.pdf(seen.direction, lanes);
-        let other = self.mixed(vertex, seen.direction, own, share);
+        let other = self.mixed(vertex, seen.direction, own, aims);
         let arriving = branch.throughput * answer * transmitted * emitted;
         self.add_light(emitter.group, arriving * (1.0 / (seen.pdf + other)));
     }

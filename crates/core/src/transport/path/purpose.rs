@@ -3,22 +3,75 @@
 
 use crate::math::Ray;
 use crate::spectrum::SampledSpectrum;
+use crate::transport::guide::{Arrival, Guide};
 use crate::transport::Gathered;
 
-/// Takes the flux that leaves a scene along a ray.
-pub type Leaving<'a> = dyn FnMut(&Ray, SampledSpectrum) + 'a;
+/// What a walk from a light shows of the flux that it carries.
+pub enum Carried<'r> {
+    /// It leaves the scene along a ray.
+    Left(&'r Ray),
+    /// It arrives where the walk turns at random.
+    Arrived(Arrival),
+}
+
+/// Takes what a walk from a light shows.
+pub type Receive<'a> = dyn FnMut(Carried<'_>, SampledSpectrum) + 'a;
+
+/// Which of the light that arrives at an eye walks bring. Both parts together are all of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Part {
+    /// All of it.
+    #[default]
+    All,
+    /// What is seen in mirrors and through smooth glass alone. Walks end where they would turn at
+    /// random: they are short, and the light they find is sharp.
+    Specular,
+    /// The rest: what has been turned at random.
+    Scattered,
+}
+
+/// What an eye does with the light that walks find for it, and what it knows of where that is.
+pub struct Eye<'a> {
+    /// What has been found.
+    pub gathered: &'a mut Gathered,
+    /// What is looked for.
+    pub part: Part,
+    /// Where light comes from.
+    pub guide: Option<&'a Guide>,
+}
 
 /// What a walk is for.
 pub(super) enum Purpose<'a> {
     /// To bring an eye the light that arrives there: emissions and the background are looked for.
-    Eye(&'a mut Gathered),
+    Eye(Eye<'a>),
     /// To carry flux from a light until it leaves the scene.
-    Light(&'a mut Leaving<'a>),
+    Light(&'a mut Receive<'a>),
 }
 
-impl Purpose<'_> {
+impl<'a> Purpose<'a> {
     /// Whether walks look for emissions and the background.
     pub fn looks_for_light(&self) -> bool {
         matches!(self, Self::Eye(_))
+    }
+
+    /// Whether walks go on where they turn at random.
+    pub fn scatters(&self) -> bool {
+        !matches!(self, Self::Eye(Eye { part: Part::Specular, .. }))
+    }
+
+    /// Whether light that a walk meets counts, if it `has_scattered` on its way.
+    pub fn counts(&self, has_scattered: bool) -> bool {
+        match self {
+            Self::Eye(eye) => has_scattered || eye.part != Part::Scattered,
+            Self::Light(_) => false,
+        }
+    }
+
+    /// Where light comes from, as far as that matters and is known.
+    pub fn guide(&self) -> Option<&'a Guide> {
+        match self {
+            Self::Eye(eye) => eye.guide,
+            Self::Light(_) => None,
+        }
     }
 }
