@@ -295,7 +295,7 @@ def test_a_lamp_shines_in_path_transport_only_where_it_is_lit(name: str, tmp_pat
     for lit in (False, True):
         path = write_lamp(name, tmp_path, {"triangles": 4_000, "lit": lit})
         scene = tomllib.loads(path.read_text())
-        assert scene["image"]["method"] == "path"
+        assert scene["image"]["method"] == "auto"
         shining = [thing for thing in scene["objects"] if "emission" in thing]
         assert bool(shining) == lit
         assert any(light["kind"] == "sphere" for light in scene["lights"]) == lit
@@ -368,7 +368,7 @@ def test_bare_dies_stand_out_of_a_white_floor(tmp_path: Path) -> None:
 def test_every_lamp_can_be_rendered_by_both_methods(name: str, tmp_path: Path) -> None:
     """Its surroundings shine for path transport; a key light and ambient light for Hall's."""
     scene = load_scene(write_lamp(name, tmp_path, {} if name == "paper" else {"triangles": 4_000}))
-    assert scene.image.method == ("hall" if name == "paper" else "path")
+    assert scene.image.method == ("hall" if name == "paper" else "auto")
     assert scene.lights
     assert scene.ambient is not None
     (notice,) = path_notices(scene)
