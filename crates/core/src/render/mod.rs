@@ -4,6 +4,7 @@
 mod allocation;
 mod features;
 mod learning;
+mod light_film;
 mod pass;
 mod photometer;
 mod settings;
@@ -16,8 +17,9 @@ use thiserror::Error;
 
 use crate::film::Film;
 use crate::scene::{Interior, Scene};
-use crate::transport::{Guide, Part, Tally};
+use crate::transport::{Guide, LightSource, Part, Shining, Tally};
 use allocation::{Allocation, Pilot};
+use light_film::LightFilm;
 use pass::Pass;
 
 pub use features::{features, Features};
@@ -104,10 +106,29 @@ pub fn render(
     let threads = rayon::ThreadPoolBuilder::new().num_threads(settings.threads);
     let pool = threads.stack_size(STACK).build()?;
     pool.install(|| {
+        let began = Instant::now();
         let guide = learning::guide(scene, settings);
-        let guide = guide.as_deref();
-        Ok(Rendering { scene, settings, interior, guide, progress }.run())
+        let (guide, source) = (guide.as_deref(), LightSource::from(Shining::of(scene)));
+        let shown = light_film(scene, &source, settings);
+        let leaves_rough = shown.is_some();
+        let rendering =
+            Rendering { scene, settings, interior, guide, leaves_rough, progress, began };
+        Ok(rendering.run(shown))
     })
+}
+
+/// The film of walks from lights, where these have a part: in a picture without spectra whose samples
+/// are allotted, if something rough and transparent is there.
+fn light_film<'a>(
+    scene: &'a Scene,
+    source: &'a LightSource,
+    settings: &'a RenderSettings,
+) -> Option<LightFilm<'a>> {
+    let Method::Lit(path) = settings.method else {
+        return None;
+    };
+    let is_for_it = settings.allots() && settings.bands_per_lane == 0 && scene.has_rough_glass();
+    is_for_it.then(|| LightFilm::new(scene, source, path, settings).ok()).flatten()
 }
 
 /// The bodies that the eye is in.
@@ -121,7 +142,10 @@ struct Rendering<'a> {
     settings: &'a RenderSettings,
     interior: Interior,
     guide: Option<&'a Guide>,
+    /// Whether walks from lights show what they send through rough boundaries.
+    leaves_rough: bool,
     progress: &'a Progress,
+    began: Instant,
 }
 
 /// A part of the light, and the film that gathers it.
@@ -133,8 +157,7 @@ struct Exposure {
 }
 
 impl Rendering<'_> {
-    fn run(&self) -> Rendered {
-        let started = Instant::now();
+    fn run(&self, shown: Option<LightFilm<'_>>) -> Rendered {
         let samples = self.settings.samples.clone();
         let new = |part: &Part| Exposure {
             part: *part,
@@ -148,20 +171,27 @@ impl Rendering<'_> {
                 exposure.limit = Some(Allocation::given(counts.clone()));
             }
             self.expose(&mut exposures, &mut tally, samples.start..u32::MAX, None);
-            return Rendered::of(exposures, tally);
+            return Rendered::of(exposures, None, tally);
         }
         let pilot_samples = self.pilot_samples();
-        if !self.settings.adaptive || pilot_samples == samples.len() as u32 {
+        if !self.settings.allots() || pilot_samples == samples.len() as u32 {
             self.expose(&mut exposures, &mut tally, samples, self.settings.time_budget);
-            return Rendered::of(exposures, tally);
+            return Rendered::of(exposures, None, tally);
         }
         let rest = samples.start + pilot_samples;
+        let eyes = Instant::now();
         self.expose(&mut exposures, &mut tally, samples.start..rest, None);
+        let mut shown = shown;
         if !self.progress.is_cancelled() {
-            self.allocate(&mut exposures, pilot_samples, started);
+            let affordable = self.affordable(pilot_samples, eyes.elapsed());
+            let paths = self.allocate(&mut exposures, shown.as_mut(), affordable);
+            if let Some(shown) = &mut shown {
+                shown.begin_anew();
+                shown.walk(LightFilm::per_batch(paths), self.progress);
+            }
             self.expose(&mut exposures, &mut tally, rest..u32::MAX, None);
         }
-        Rendered::of(exposures, tally)
+        Rendered::of(exposures, shown, tally)
     }
 
     /// How many samples of every pixel the first round has: a quarter of all where their number is
@@ -177,19 +207,39 @@ impl Rendering<'_> {
         }
     }
 
-    /// Allot samples, or time, as the first round says.
-    fn allocate(&self, exposures: &mut [Exposure], pilot_samples: u32, started: Instant) {
-        let mut affordable = self.settings.samples.len() as f64;
-        if let Some(budget) = self.settings.time_budget {
-            let share = budget.as_secs_f64() / started.elapsed().as_secs_f64();
-            affordable = affordable.min(f64::from(pilot_samples) * share);
-        }
+    /// How many samples of every pixel can be had, if those of the first round took so long.
+    fn affordable(&self, pilot_samples: u32, took: Duration) -> f64 {
+        let most = self.settings.samples.len() as f64;
+        self.settings.time_budget.map_or(most, |budget| {
+            let left = budget.as_secs_f64() - self.began.elapsed().as_secs_f64();
+            let more = (left / took.as_secs_f64()).max(0.0);
+            most.min(f64::from(pilot_samples) * (1.0 + more))
+        })
+    }
+
+    /// Allot samples, or time, as the first round says; how many walks from lights there are to be.
+    fn allocate(
+        &self,
+        exposures: &mut [Exposure],
+        shown: Option<&mut LightFilm<'_>>,
+        affordable: f64,
+    ) -> f64 {
         let films: Vec<&Film> = exposures.iter().map(|exposure| &exposure.film).collect();
-        let pilot = Pilot::of(&films);
-        let allocations = pilot.allocate(affordable, self.settings.target_error);
+        let mut pilot = Pilot::of(&films);
+        if let Some(shown) = shown {
+            let segments = films.iter().flat_map(|film| &film.segments).sum::<u64>();
+            let mut more = LightFilm::FEWEST;
+            while shown.segments() < segments / 4 && !self.progress.is_cancelled() {
+                shown.walk(more, self.progress);
+                more = shown.paths();
+            }
+            pilot.share_with(shown.trial(&pilot.tone));
+        }
+        let (allocations, paths) = pilot.allocate(affordable, self.settings.target_error);
         for (exposure, allocation) in exposures.iter_mut().zip(allocations) {
             exposure.limit = Some(allocation);
         }
+        paths
     }
 
     fn pixels(&self) -> u64 {
@@ -220,12 +270,21 @@ impl Rendering<'_> {
         let (mut next, mut length) = (samples.start, 1);
         while next < end && !self.progress.is_cancelled() {
             let until = end.min(next + length);
-            let Self { scene, settings, interior, guide, progress } = *self;
+            let Self { scene, settings, interior, guide, leaves_rough, progress, .. } = *self;
             for Exposure { part, film, limit } in &mut *exposures {
                 let (part, limit) = (*part, limit.as_ref());
                 let samples = next..until;
-                let pass =
-                    Pass { scene, settings, interior, part, samples, limit, guide, progress };
+                let pass = Pass {
+                    scene,
+                    settings,
+                    interior,
+                    part,
+                    samples,
+                    limit,
+                    leaves_rough,
+                    guide,
+                    progress,
+                };
                 tally.add(&pass.run(film));
             }
             next = until;
@@ -245,8 +304,13 @@ impl Rendering<'_> {
 }
 
 impl Rendered {
-    fn of(exposures: Vec<Exposure>, tally: Tally) -> Self {
-        let films = exposures.into_iter().map(|exposure| exposure.film).collect();
+    fn of(exposures: Vec<Exposure>, shown: Option<LightFilm<'_>>, mut tally: Tally) -> Self {
+        let layers = exposures[0].film.layers;
+        let mut films: Vec<Film> = exposures.into_iter().map(|exposure| exposure.film).collect();
+        if let Some(shown) = shown {
+            films.push(shown.film(layers));
+            tally.eye_rays += shown.segments();
+        }
         Self { film: Film::sum(films), tally }
     }
 }

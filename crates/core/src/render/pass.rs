@@ -25,6 +25,8 @@ pub(super) struct Pass<'a> {
     pub samples: Range<u32>,
     /// How many samples each pixel takes in all, where that is not the same.
     pub limit: Option<&'a Allocation>,
+    /// Whether walks from lights show what they send through rough boundaries.
+    pub leaves_rough: bool,
     /// Where light comes from, for walks that know.
     pub guide: Option<&'a Guide>,
     pub progress: &'a Progress,
@@ -143,7 +145,8 @@ impl Pass<'_> {
                     HallWalk::radiance(scene, hall, wavelengths, sampler, tally, start);
             }
             Method::Path(path) | Method::Lit(path) => {
-                let eye = Eye { gathered, part: self.part, guide: self.guide };
+                let (part, guide, leaves_rough) = (self.part, self.guide, self.leaves_rough);
+                let eye = Eye { gathered, part, guide, leaves_rough };
                 PathWalk::gather(scene, path, wavelengths, sampler, tally, eye, start);
             }
         }

@@ -85,6 +85,11 @@ impl RenderSettings {
         Ok(())
     }
 
+    /// Whether samples are allotted by what a first round shows.
+    pub(super) fn allots(&self) -> bool {
+        self.adaptive && self.counts.is_none()
+    }
+
     /// What is exposed by itself, each on a film of its own.
     pub(super) fn parts(&self) -> &'static [Part] {
         match self.method {
@@ -96,5 +101,33 @@ impl RenderSettings {
     pub(super) fn new_film(&self, scene: &Scene) -> Film {
         let layers = if self.layers { scene.groups } else { 0 };
         Film::new(self.width, self.height, self.bands_per_lane, layers)
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+
+    /// Settings of no account, but for the size and the filter.
+    pub fn of_size(width: u32, height: u32, filter: PixelFilter) -> RenderSettings {
+        let path = PathSettings { max_depth: 8, split_depth: 1, roulette_below: 0.1 };
+        RenderSettings {
+            width,
+            height,
+            samples: 0..1,
+            counts: None,
+            adaptive: false,
+            target_error: None,
+            time_budget: None,
+            sequence: PixelSequence::Sobol,
+            filter,
+            seed: 1,
+            method: Method::Lit(path),
+            guide: None,
+            bands_per_lane: 0,
+            layers: false,
+            threads: 1,
+            tile: 1,
+        }
     }
 }

@@ -16,5 +16,5 @@ pub use gathered::Gathered;
 pub use guide::Guide;
 pub use hall::{HallSettings, HallWalk};
 pub use ledger::{Balance, Ledger};
-pub use path::{Carried, Eye, Part, PathSettings, PathWalk};
+pub use path::{Carried, Eye, Part, PathSettings, PathWalk, Screen};
 pub use tally::Tally;

@@ -3,10 +3,12 @@
 
 use std::f64::consts::PI;
 
+use lamplit_core::film::Film;
 use lamplit_core::math::DVec3;
 use lamplit_core::matter::Optics;
-use lamplit_core::render::{learn, render, Progress};
-use lamplit_core::scene::{Scene, Strength};
+use lamplit_core::render::{learn, render, Method, Progress, RenderSettings};
+use lamplit_core::sampling::PixelFilter;
+use lamplit_core::scene::{Camera, Projection, Scene, Strength};
 
 use crate::common::*;
 
@@ -64,7 +66,7 @@ fn what_was_learned_of_another_scene_changes_no_expectation() {
     let take = Take::lit(1 << 13, USUAL);
     let misled = |seed| {
         let guide = Some(std::sync::Arc::new(guide.clone()));
-        let settings = lamplit_core::render::RenderSettings { guide, seed, ..take.settings() };
+        let settings = RenderSettings { guide, seed, ..take.settings() };
         let film = render(&scene, &settings, &Progress::default()).unwrap().film;
         let values: Vec<f64> = film.pixels.iter().map(|pixel| pixel.mean()[1]).collect();
         Estimate::of(values.iter())
@@ -79,11 +81,75 @@ fn what_was_learned_of_another_scene_changes_no_expectation() {
 fn what_is_learned_does_not_depend_on_threads() {
     let scene = bulb(1.0, 1.5, 0.5);
     let pictures = [1, 2, 5].map(|threads| {
-        let settings =
-            lamplit_core::render::RenderSettings { threads, ..Take::lit(16, USUAL).settings() };
+        let settings = RenderSettings { threads, ..Take::lit(16, USUAL).settings() };
         render(&scene, &settings, &Progress::default()).unwrap().film.pixels
     });
     assert!(pictures[0].iter().any(|pixel| pixel.xyz[1] > 0.0));
     assert_eq!(pictures[0], pictures[1]);
     assert_eq!(pictures[0], pictures[2]);
+}
+
+/// Two lamps behind a frosted, dyed pane and before a matt wall, over a 24 × 16 picture.
+fn frosted(projection: Projection) -> Scene {
+    let mut world = World::dark();
+    for (x, group) in [(-5.0, 1), (6.0, 2)] {
+        let lamp = world.add(matt(0.2), disc(DVec3::new(x, 0.0, 0.0), DVec3::Y, 0.8));
+        world.shine(lamp, Strength::Flux(by_lane(|lane| 0.2 + 0.15 * lane as f64)), group);
+    }
+    world.add(matt(0.6), cuboid(DVec3::new(-16.0, -3.0, -12.0), DVec3::new(16.0, -1.0, 12.0)));
+    let dye = by_lane(|lane| 0.1 - 0.005 * lane as f64);
+    let pane = cuboid(DVec3::new(-12.0, 6.0, -8.0), DVec3::new(12.0, 8.0, 8.0));
+    world.add_rough(body(by_lane(|lane| 1.5 - 0.004 * lane as f64), dye, None), 0.3, pane);
+    let eye = DVec3::new(20.0, 70.0, 15.0);
+    world.seen_by(Camera::new(eye, DVec3::new(0.0, 4.0, 0.0), DVec3::Z, projection).unwrap())
+}
+
+#[test]
+fn light_shown_from_the_lamps_and_light_found_from_the_eye_make_the_picture_that_the_eye_finds() {
+    for projection in [
+        Projection::Pinhole { field_of_view_deg: 24.0 },
+        Projection::ThinLens { field_of_view_deg: 24.0, aperture: 9.0, focus: 68.0 },
+        Projection::Orthographic { height: 30.0 },
+    ] {
+        let scene = frosted(projection);
+        let picture = |method: Method, adaptive: bool, samples: u32| {
+            let settings = RenderSettings {
+                width: 24,
+                height: 16,
+                samples: 0..samples,
+                method,
+                adaptive,
+                filter: PixelFilter::Gaussian,
+                bands_per_lane: 0,
+                ..Take::of(1, USUAL).settings()
+            };
+            render(&scene, &settings, &Progress::default()).unwrap().film
+        };
+        let shown = picture(Method::Lit(USUAL), true, 96);
+        let found = picture(Method::Lit(USUAL), false, 256);
+        // By blocks of 4 × 4 pixels and light group.
+        let block = |film: &Film, at: usize, group: usize| {
+            let (column, row) = (at % 6 * 4, at / 6 * 4);
+            let pixels = (0..16).map(|i| (row + i / 4) * 24 + column + i % 4);
+            let sums: Vec<_> =
+                pixels.map(|pixel| film.layer_sums[pixel * film.layers + group]).collect();
+            let mean = sums.iter().map(|sums| sums.mean()[1]).sum::<f64>();
+            let variance = sums.iter().map(|sums| sums.standard_error()[1].powi(2)).sum::<f64>();
+            (mean, variance)
+        };
+        let (mut squares, mut number) = (0.0, 0.0);
+        for group in [1, 2] {
+            for at in 0..24 {
+                let [(a, va), (b, vb)] = [&shown, &found].map(|film| block(film, at, group));
+                let z = (a - b) / (va + vb).sqrt().max(1e-12);
+                assert!(z.abs() < 5.0, "{projection:?} {group} {at}: {a} {b} {z}");
+                squares += z * z;
+                number += 1.0;
+            }
+        }
+        // Neighbouring pixels share splats, so that σ of a block is a little too small.
+        assert!(squares / number < 2.5, "{projection:?}: {}", squares / number);
+        let total = |film: &Film| film.pixels.iter().map(|pixel| pixel.mean()[1]).sum::<f64>();
+        assert!((total(&shown) / total(&found) - 1.0).abs() < 0.03);
+    }
 }

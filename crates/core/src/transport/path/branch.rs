@@ -25,6 +25,8 @@ pub(super) struct Branch {
     pub splits: u32,
     /// Whether it has turned at random.
     pub has_scattered: bool,
+    /// Whether what it meets of emitters is left to walks from lights.
+    pub is_left: bool,
     /// How it got its direction.
     pub came_by: CameBy,
     /// How much more light may come against `ray` than its throughput makes one expect: it was aimed
@@ -75,6 +77,7 @@ impl Branch {
             depth: 0,
             splits: 0,
             has_scattered: false,
+            is_left: false,
             came_by,
             promise: 1.0,
         }

@@ -9,13 +9,13 @@
 
 use std::f64::consts::PI;
 
-use crate::math::{DVec3, Ray};
+use crate::math::{DVec2, DVec3, Ray};
 use crate::scene::BodyId;
 use crate::spectrum::SampledSpectrum;
 use crate::transport::guide::{Answered, Arrival};
 
 use super::branch::{Branch, CameBy};
-use super::purpose::{Carried, Part, Purpose};
+use super::purpose::{Carried, Part, Purpose, Screen};
 use super::vertex::Vertex;
 use super::{Meeting, PathWalk};
 
@@ -54,7 +54,7 @@ impl<'a> PathWalk<'a> {
                     eye.gathered.add(scene, wavelengths, group, branch.throughput * radiance);
                 });
             }
-            Purpose::Light(receive) => receive(Carried::Left(&branch.ray), branch.throughput),
+            Purpose::Light(receive, _) => receive(Carried::Left(&branch.ray), branch.throughput),
         }
     }
 
@@ -63,7 +63,7 @@ impl<'a> PathWalk<'a> {
         let Some(number) = self.scene.emitters.of_body(meeting.hit.body) else {
             return;
         };
-        if !self.purpose.counts(branch.has_scattered) {
+        if !self.purpose.counts(branch) {
             return;
         }
         let emitters = &self.scene.emitters;
@@ -99,6 +99,12 @@ impl<'a> PathWalk<'a> {
         }
         let lanes = self.lanes(branch.throughput);
         self.show_arrival(branch, vertex);
+        if branch.depth == 0 && vertex.is_boundary && self.purpose.leaves_rough() {
+            branch.is_left = true;
+        }
+        if vertex.is_boundary {
+            self.show(branch, vertex);
+        }
         let aims = self.aims(vertex, &lanes);
         self.see_emitters(branch, vertex, &lanes, &aims);
         let [technique, u, v, w] = branch.sampler.next_4d();
@@ -132,10 +138,35 @@ impl<'a> PathWalk<'a> {
     /// Show whoever follows a walk from a light that it arrives at a vertex.
     fn show_arrival(&mut self, branch: &Branch, vertex: &Vertex<'_>) {
         let weight = self.weight(branch.throughput);
-        if let Purpose::Light(receive) = &mut self.purpose {
+        if let Purpose::Light(receive, _) = &mut self.purpose {
             let (position, direction, way) = (vertex.position, -branch.ray.direction, branch.way);
             let arrival = Arrival { position, direction, way, weight };
             receive(Carried::Arrived(arrival), branch.throughput);
+        }
+    }
+
+    /// Show what the camera sees of a walk from a light at a vertex, along a straight way.
+    fn show(&mut self, branch: &mut Branch, vertex: &Vertex<'_>) {
+        let Some(Screen { width, height }) = self.purpose.screen() else {
+            return;
+        };
+        let [u, v, ..] = branch.sampler.next_4d();
+        let camera = &self.scene.camera;
+        let Some(seen) = camera.see(vertex.position, DVec2::new(u, v), width, height) else {
+            return;
+        };
+        let outside = -2.0..f64::from(width) + 2.0;
+        if !outside.contains(&seen.place.x) || !vertex.agrees(seen.direction) {
+            return;
+        }
+        let answer = vertex.answer(seen.direction);
+        if answer.max() <= 0.0 {
+            return;
+        }
+        let way = self.straight_way(vertex, seen.direction, seen.distance, None);
+        if let (Some((transmitted, _)), Purpose::Light(receive, _)) = (way, &mut self.purpose) {
+            let shown = branch.throughput * answer * transmitted * seen.per_intensity;
+            receive(Carried::Shown(seen.place), shown);
         }
     }
 
@@ -179,7 +210,7 @@ impl<'a> PathWalk<'a> {
     ) {
         let emitters = &self.scene.emitters;
         let is_looked_for = self.purpose.looks_for_light() && !emitters.is_empty();
-        if !is_looked_for || branch.depth >= self.settings.max_depth {
+        if !is_looked_for || branch.is_left || branch.depth >= self.settings.max_depth {
             return;
         }
         let [u, v, w, _] = branch.sampler.next_4d();
@@ -192,7 +223,7 @@ impl<'a> PathWalk<'a> {
         if emitted.max() <= 0.0 || answer.max() <= 0.0 || !vertex.agrees(seen.direction) {
             return;
         }
-        let way = self.straight_way(vertex, seen.direction, seen.distance, emitter.body);
+        let way = self.straight_way(vertex, seen.direction, seen.distance, Some(emitter.body));
         let Some((transmitted, index)) = way else {
             return;
         };
@@ -203,14 +234,15 @@ impl<'a> PathWalk<'a> {
         self.add_light(emitter.group, arriving * (1.0 / (seen.pdf + other)));
     }
 
-    /// The transmittance of the straight way to a point of an emitter, and the index of the medium
-    /// there; none where anything is in the way but boundaries that are none to light.
+    /// The transmittance of the straight way to a point, on the surface of the body `end` or on none, and
+    /// the index of the medium there; nothing where anything is in the way but boundaries that are none
+    /// to light.
     fn straight_way(
         &mut self,
         vertex: &Vertex<'_>,
         direction: DVec3,
         distance: f64,
-        emitter: BodyId,
+        end: Option<BodyId>,
     ) -> Option<(SampledSpectrum, SampledSpectrum)> {
         let (origin, mut interior) = vertex.leave_along(direction);
         let mut left = distance;
@@ -218,7 +250,7 @@ impl<'a> PathWalk<'a> {
         let mut share = SampledSpectrum::ONE;
         for _ in 0..MOST_SURFACES {
             self.tally.shadow_rays += 1;
-            ray.t_max = left * (1.0 + 2.0 * SAME_POINT);
+            ray.t_max = if end.is_some() { left * (1.0 + 2.0 * SAME_POINT) } else { left };
             let place = self.scene.first_place(&ray);
             let length = place.as_ref().map_or(left, |place| place.hit.point.t);
             if let Some(medium) = self.scene.medium(&interior) {
@@ -233,7 +265,7 @@ impl<'a> PathWalk<'a> {
             };
             let hit = place.hit;
             if self.scene.material_of(hit.body).dielectric().is_none() {
-                let reached = hit.body == emitter && length >= left * (1.0 - SAME_POINT);
+                let reached = end == Some(hit.body) && length >= left * (1.0 - SAME_POINT);
                 return reached.then(|| (share, self.index(&interior)));
             }
             let beyond = interior.through(place.faces(), |_, _| {});

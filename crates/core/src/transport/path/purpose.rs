@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 OR MIT
 //! [`Purpose`]: what a walk is for.
 
-use crate::math::Ray;
+use super::branch::Branch;
+use crate::math::{DVec2, Ray};
 use crate::spectrum::SampledSpectrum;
 use crate::transport::guide::{Arrival, Guide};
 use crate::transport::Gathered;
@@ -12,6 +13,8 @@ pub enum Carried<'r> {
     Left(&'r Ray),
     /// It arrives where the walk turns at random.
     Arrived(Arrival),
+    /// A camera sees it at this place of its image, in pixels: the radiance there over this density.
+    Shown(DVec2),
 }
 
 /// Takes what a walk from a light shows.
@@ -38,6 +41,18 @@ pub struct Eye<'a> {
     pub part: Part,
     /// Where light comes from.
     pub guide: Option<&'a Guide>,
+    /// Whether walks from lights show what emitters send through rough boundaries that are the first
+    /// thing the eye sees: then it is left to them.
+    pub leaves_rough: bool,
+}
+
+/// The image on which a walk from a light shows what a camera sees of it, in pixels.
+#[derive(Clone, Copy, Debug)]
+pub struct Screen {
+    /// Its width.
+    pub width: u32,
+    /// Its height.
+    pub height: u32,
 }
 
 /// What a walk is for.
@@ -45,7 +60,7 @@ pub(super) enum Purpose<'a> {
     /// To bring an eye the light that arrives there: emissions and the background are looked for.
     Eye(Eye<'a>),
     /// To carry flux from a light until it leaves the scene.
-    Light(&'a mut Receive<'a>),
+    Light(&'a mut Receive<'a>, Option<Screen>),
 }
 
 impl<'a> Purpose<'a> {
@@ -59,11 +74,27 @@ impl<'a> Purpose<'a> {
         !matches!(self, Self::Eye(Eye { part: Part::Specular, .. }))
     }
 
-    /// Whether light that a walk meets counts, if it `has_scattered` on its way.
-    pub fn counts(&self, has_scattered: bool) -> bool {
+    /// Whether light of an emitter counts that a branch meets.
+    pub fn counts(&self, branch: &Branch) -> bool {
         match self {
-            Self::Eye(eye) => has_scattered || eye.part != Part::Scattered,
-            Self::Light(_) => false,
+            Self::Eye(eye) => match eye.part {
+                Part::All | Part::Specular => !branch.is_left,
+                Part::Scattered => branch.has_scattered && !branch.is_left,
+            },
+            Self::Light(..) => false,
+        }
+    }
+
+    /// Whether a walk's light at a rough boundary, the first thing seen, is left to walks from lights.
+    pub fn leaves_rough(&self) -> bool {
+        matches!(self, Self::Eye(Eye { leaves_rough: true, .. }))
+    }
+
+    /// The image on which a walk from a light shows itself.
+    pub fn screen(&self) -> Option<Screen> {
+        match self {
+            Self::Eye(_) => None,
+            Self::Light(_, screen) => *screen,
         }
     }
 
@@ -71,7 +102,7 @@ impl<'a> Purpose<'a> {
     pub fn guide(&self) -> Option<&'a Guide> {
         match self {
             Self::Eye(eye) => eye.guide,
-            Self::Light(_) => None,
+            Self::Light(..) => None,
         }
     }
 }
