@@ -14,7 +14,7 @@ from lit_runners import Shot
 
 import lamplit as ll
 from lamplit.colour.picture import to_picture
-from lamplit.report.develop import scene_display, scene_white_xy
+from lamplit.report.view import display_of, scene_white_xy
 
 #: Height of a line of text and space between pictures, in pixels.
 _LINE, _GAP = 18, 4
@@ -80,7 +80,7 @@ def _shown(scene: ll.Scene, xyz: Array, mean: float) -> Array:
     """Return sRGB (H, W, 3) of 0 to 1, luminance through T = Y/(Y + mean), colour kept."""
     developed = to_picture(
         xyz / (xyz[..., 1:2] + mean),
-        display=scene_display(scene),
+        display=display_of(scene.display.space, root=scene.root),
         white_luminance_cd_m2=1.0,
         white_xy=scene_white_xy(scene),
         adaptation=scene.display.adaptation,

@@ -2,8 +2,8 @@
 """The converged picture of a lit lamp: long runs of all programs, kept from bench to bench.
 
 Each program's parts lie in ``build/lit-references/`` under a hash of what the scene shows, so that
-they are made once. A file of a program is made anew where other parts are asked for; delete it
-when the program has changed in a way that matters.
+they are made once, also where the program has changed since: delete the file of a method whose
+pictures were wrong.
 """
 
 from __future__ import annotations

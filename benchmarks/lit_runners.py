@@ -23,6 +23,8 @@ from lamplit.engine.carrier import SpectralCarrier
 
 MITSUBA = "Mitsuba"
 _CORES = os.cpu_count() or 1
+#: Less than this cannot be told from the noise of loading.
+_LEAST_S = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,10 +45,15 @@ class Runner(Protocol):
 
 
 class Lamplit:
-    """A method of Lamplit; every picture is rendered anew, as users ask for it."""
+    """A method of Lamplit; every picture is rendered anew, as users ask for it.
+
+    What it is asked for is seconds on the wall, and what counts is core seconds: each picture
+    corrects what the next one is asked for, by a factor of two at most.
+    """
 
     def __init__(self, scene: ll.Scene, method: str) -> None:
         self._scene, self._method = scene, method
+        self._stretch = 1.0
         carrier = SpectralCarrier(scene.image.wavelength_range_nm, scene.image.observer)
         for _ in range(2):  # the first also reads the meshes
             start = time.process_time()
@@ -58,8 +65,10 @@ class Lamplit:
         scene, taken = picture(self._scene, seed=seed), list[Shot]()
         for wanted in core_s:
             start = time.process_time()
-            image = ll.render(scene, method=self._method, time_s=wanted / _CORES)
-            spent = time.process_time() - start - self._loading_s
+            asked_s = self._stretch * wanted / _CORES
+            image = ll.render(scene, method=self._method, time_s=asked_s)
+            spent = max(time.process_time() - start - self._loading_s, _LEAST_S)
+            self._stretch *= min(max(wanted / spent, 0.5), 2.0)
             taken.append(Shot(image.xyz, image.samples, spent))
         return taken
 

@@ -51,6 +51,45 @@ VARIANTS = [
     ("led-array", {"triangles": 50_000, "optics": "cups", "layout": "4x3", "cover_colour": "red"}),
     ("led-array", {"triangles": 50_000, "pitch_mm": 12, "die_size_mm": 0.3, "lit": True}),
     ("led-array", {"triangles": 50_000, "pitch_mm": 40, "optics": "cups"}),
+    ("led-array", {"triangles": 50_000, "optics": "none", "cover_optics": "pillows"}),
+    (
+        "led-array",
+        {
+            "triangles": 20_000,
+            "optics": "none",
+            "pitch_mm": 12,
+            "die_size_mm": 1.4,
+            "layout": "4x3",
+        },
+    ),
+    (
+        "led-array",
+        {
+            "triangles": 60_000,
+            "optics": "cups",
+            "pitch_mm": 40,
+            "cover_optics": "pillows",
+            "pillow_pitch_mm": 20,
+            "pillow_radius_mm": 16,
+            "cover_dome_radius_mm": 300,
+        },
+    ),
+    ("light-guide", {}),
+    ("light-guide", {"triangles": 4_000, "cover": "none", "leds": "one", "lit": True}),
+    ("light-guide", {"triangles": 30_000, "bow_mm": 20, "cover": "red", "lit": True}),
+    ("light-guide", {"triangles": 20_000, "length_mm": 60, "bow_mm": 5, "diameter_mm": 14}),
+    (
+        "light-guide",
+        {
+            "triangles": 90_000,
+            "length_mm": 400,
+            "diameter_mm": 12,
+            "notch_depth_mm": 1.5,
+            "notch_angle_deg": 30,
+            "notch_pitch_mm": 5.5,
+        },
+    ),
+    ("light-guide", {"triangles": 200_000, "diameter_mm": 6, "notch_depth_mm": 0.1}),
     ("retro", {}),
     ("retro", {"triangles": 4_000, "pitch_mm": 6}),
     ("retro", {"aperture": "triangular", "squareness": 2.0}),
@@ -108,7 +147,7 @@ def test_the_scene_loads_without_notices(
     assert [entry.notices for entry in scene.resolved_objects() if entry.notices] == []
 
 
-@pytest.mark.parametrize("name", ["p21w", "led-array", "retro"])
+@pytest.mark.parametrize("name", ["p21w", "led-array", "light-guide", "retro"])
 @pytest.mark.parametrize("wanted", [30_000, 200_000, 1_000_000])
 def test_the_number_of_triangles_is_about_as_asked(name: str, wanted: int, tmp_path: Path) -> None:
     meshes = meshes_of(write_lamp(name, tmp_path, {"triangles": wanted}))
@@ -251,12 +290,12 @@ def test_the_dies_have_the_colour_that_they_shine_in(
     assert mask == "black-abs"
 
 
-@pytest.mark.parametrize("name", ["p21w", "led-array"])
+@pytest.mark.parametrize("name", ["p21w", "led-array", "light-guide"])
 def test_a_lamp_shines_in_path_transport_only_where_it_is_lit(name: str, tmp_path: Path) -> None:
     for lit in (False, True):
         path = write_lamp(name, tmp_path, {"triangles": 4_000, "lit": lit})
         scene = tomllib.loads(path.read_text())
-        assert scene["image"]["method"] == "path"
+        assert scene["image"]["method"] == "auto"
         shining = [thing for thing in scene["objects"] if "emission" in thing]
         assert bool(shining) == lit
         assert any(light["kind"] == "sphere" for light in scene["lights"]) == lit
@@ -293,11 +332,43 @@ def test_each_die_shines_forward_in_its_own_spectrum(
     assert len({face.emission.flux_lm for face in faces if face.emission is not None}) == 1
 
 
+@pytest.mark.parametrize(
+    ("name", "parameter", "part"),
+    [("p21w", "reflector_roughness", "reflector"), ("led-array", "cover_roughness", "cover")],
+)
+def test_a_surface_is_as_rough_as_asked(
+    name: str, parameter: str, part: str, tmp_path: Path
+) -> None:
+    for roughness in (0.0, 0.3):
+        settings = {"triangles": 4_000, parameter: roughness}
+        scene = load_scene(write_lamp(name, tmp_path / str(roughness), settings))
+        (own,) = (thing for thing in scene.resolved_objects() if thing.name == part)
+        assert getattr(own.material, "roughness", None) == roughness
+
+
+def test_bare_dies_stand_out_of_a_white_floor(tmp_path: Path) -> None:
+    settings = {"triangles": 20_000, "optics": "none", "die_size_mm": 1.0}
+    path = write_lamp("led-array", tmp_path, settings)
+    meshes = meshes_of(path)
+    assert "collimators" not in meshes
+    tray = load_scene(path).resolve_material("white-paint")
+    assert tray.kind == "diffuse"
+    materials = {own["name"]: own["material"] for own in tomllib.loads(path.read_text())["objects"]}
+    assert materials["tray"] == "white-paint"
+    inner = np.abs(meshes["tray"].vertices[:, :2]).max(axis=1) < 17.0
+    floor = meshes["tray"].vertices[inner][:, 2].max()
+    assert floor < meshes["dies"].vertices[:, 2].max()
+    # Seen from straight ahead, nothing but the holes lets one look past the floor.
+    start = np.array([[0.0, 0.0, 30.0], [8.5, 8.5, 30.0]])
+    down = np.tile([0.0, 0.0, -1.0], (2, 1))
+    assert meshes["tray"].ray.intersects_any(start, down).tolist() == [True, False]
+
+
 @pytest.mark.parametrize("name", lamp_names())
 def test_every_lamp_can_be_rendered_by_both_methods(name: str, tmp_path: Path) -> None:
     """Its surroundings shine for path transport; a key light and ambient light for Hall's."""
     scene = load_scene(write_lamp(name, tmp_path, {} if name == "paper" else {"triangles": 4_000}))
-    assert scene.image.method == ("hall" if name == "paper" else "path")
+    assert scene.image.method == ("hall" if name == "paper" else "auto")
     assert scene.lights
     assert scene.ambient is not None
     (notice,) = path_notices(scene)
@@ -320,6 +391,11 @@ def test_every_parameter_has_a_default_and_a_meaning(name: str) -> None:
         ("p21w", {"lens_colour": "blue"}, "'red'"),
         ("p21w", {"pillow_radius_mm": 3}, "at least 0.8 times"),
         ("p21w", {"triangles": "many"}, "p21w.triangles"),
+        ("p21w", {"reflector_roughness": 1e-4}, "0 (smooth) or 0.001 to 1"),
+        ("led-array", {"pillow_radius_mm": 3}, "at least 0.8 times"),
+        ("light-guide", {"notch_depth_mm": 1.2}, "an eighth of the rod"),
+        ("light-guide", {"notch_pitch_mm": 1}, "notches are 0.938 mm wide"),
+        ("light-guide", {"length_mm": 60, "bow_mm": 6}, "a twelfth of the length"),
         ("retro", {"pitch_mm": 14}, "fifth of the plate"),
     ],
 )

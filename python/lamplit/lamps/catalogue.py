@@ -20,6 +20,7 @@ _DESCRIPTIONS = {
     "paper": "a sphere and a triangular pyramid of coloured plastic over a checker floor",
     "p21w": "housing, paraboloid, bulb with filament, red lens with pillow optics",
     "led-array": "twelve dies on a board, collimators or reflector cups, smoke or red cover",
+    "light-guide": "a clear rod with notches along its back, LEDs at its ends, a white trough",
     "retro": "a reflex reflector: one red plate with a back full of cube corners",
 }
 
