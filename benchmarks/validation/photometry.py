@@ -141,7 +141,8 @@ def both_ways(lamp: str) -> Iterator[Finding]:
     # Of m points one may exceed what belongs to 1 − (1 − α)^(1/m): Šidák. Most of σ is the eye's,
     # from few rounds: Student's t.
     level = 1.0 - (1.0 - ALPHA) ** (1.0 / len(_SPOTS))
-    threshold = float(student_t.ppf(1.0 - level / 2.0, _ROUNDS - 1))
+    quantile: Any = student_t.ppf
+    threshold = float(quantile(1.0 - level / 2.0, _ROUNDS - 1))
     for at, (h, v) in enumerate(_SPOTS):
         sigma = float(np.hypot(check.light_standard_error_cd[at], check.eye_standard_error_cd[at]))
         apart = float(check.sigmas[at])

@@ -110,7 +110,7 @@ class Meter:
 def meter(monkeypatch: pytest.MonkeyPatch) -> Meter:
     """Put a meter in the engine's place, and draw no plots, which take seconds."""
     found = Meter()
-    monkeypatch.setattr("lamplit.report.photometry.files.draw_plots", lambda _: [])
+    monkeypatch.setattr("lamplit.report.photometry.files.draw_plots", lambda *_: [])
     monkeypatch.setattr(engine, "measure", found.measure)
     return found
 
@@ -286,7 +286,7 @@ def test_a_function_whose_groups_are_dark_is_told_so(
     assert numbers_in(tmp_path)["outcome"] == "fail"
 
 
-def test_ctrl_c_before_walking_says_that_nothing_is_written(
+def test_ctrl_c_before_walking_says_so(
     lamplit: Callable[..., int], lamp: Path, tmp_path: Path,
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch,
 ) -> None:  # fmt: skip
@@ -295,7 +295,7 @@ def test_ctrl_c_before_walking_says_that_nothing_is_written(
 
     monkeypatch.setattr("lamplit.scene.load_scene", stopped)
     assert lamplit("measure", lamp, "-o", tmp_path) == 130
-    assert capsys.readouterr().err == "stopped; nothing is written\n"
+    assert capsys.readouterr().err == "stopped before anything was finished\n"
 
 
 def test_a_rule_may_be_for_one_function_and_have_options(lamp: Path) -> None:

@@ -113,6 +113,8 @@ class Wanted:
     production: bool = False
     seed: int | None = None
     assignments: Sequence[str] = ()
+    #: Whether it is to be measured from the receiver as well.
+    cross_check: bool = False
 
     def load(self) -> Scene:
         """Return the scene with what the options change in it.
@@ -121,10 +123,14 @@ class Wanted:
             LamplitError: The scene or an option cannot be used.
         """
         from lamplit.cli.overrides import overrides, scene_file
+        from lamplit.engine.cross_check import check_visible
         from lamplit.scene import load_scene
 
         changed = overrides(assignments=self.assignments, seed=self.seed)
-        return load_scene(scene_file(self.place), overrides=changed)
+        scene = load_scene(scene_file(self.place), overrides=changed)
+        if self.cross_check:
+            check_visible(scene)
+        return scene
 
     @property
     def distance_m(self) -> float | None:

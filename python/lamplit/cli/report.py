@@ -69,6 +69,7 @@ def report(
     from lamplit.report.atomic import prepare_output, write_bytes
     from lamplit.report.photometry.kept import MEASUREMENT_FILE
     from lamplit.report.photometry.page import pictures_in, read_picture, render_page
+    from lamplit.report.progress import Progress
 
     if output.suffix.lower() not in (".html", ".htm"):
         raise OutputError("a report is a .html file; name one with -o", file=output)
@@ -88,7 +89,9 @@ def report(
         found = measured(wanted, budget, threads=threads)
         results, stop = found.results, found.stop
         results = replace(results, command=command_line(sys.argv))
-    write_bytes(output, render_page(results, shown).encode())
+    with Progress("Drawing") as progress:
+        page = render_page(results, shown, progress)
+    write_bytes(output, page.encode())
     _tell(results, output)
     if stop is not None and stop.signal_number is not None:
         raise typer.Exit(stop.exit_code)

@@ -19,11 +19,12 @@ from numpy.typing import NDArray
 from lamplit import _core
 from lamplit.engine.assembly import assemble
 from lamplit.engine.carrier import SpectralCarrier
-from lamplit.errors import LamplitError
+from lamplit.errors import LamplitError, SceneError
 
 if TYPE_CHECKING:
     from lamplit.engine.measurement import Lit, Measurement
     from lamplit.engine.receivers import Goniometer
+    from lamplit.scene import Scene
 
 Array = NDArray[np.float64]
 
@@ -53,6 +54,21 @@ class CrossCheck:
         return np.divide(off, sigma, out=np.zeros_like(off), where=off != 0.0)
 
 
+def check_visible(scene: Scene) -> None:
+    """Check that an eye can see all that shines in ``scene``.
+
+    Raises:
+        SceneError: Rays of a file start in no surface that an eye could see.
+    """
+    if scene.ray_files:
+        raise SceneError(
+            "the rays of a file are followed forward only: no eye sees them, and so there is "
+            "nothing to cross-check; leave --cross-check out",
+            file=scene.path,
+            where="ray_files",
+        )
+
+
 def cross_check(
     measurement: Measurement,
     lit: Lit = None,
@@ -72,7 +88,7 @@ def cross_check(
     ``progress`` is called with the rounds done and to do, of all spots together.
 
     Raises:
-        LamplitError: There is no spot, fewer than two rounds, or the light was not the scene's own.
+        LamplitError: There is no spot, fewer than two rounds, or light that no eye can see.
         KeyboardInterrupt: Ctrl-C; half of a comparison says nothing.
     """
     from lamplit.engine.measure import in_laboratory
@@ -87,6 +103,7 @@ def cross_check(
     brightest = np.argsort(seen.spot_cd)[::-1][:3]
     chosen = np.sort(brightest) if spots is None else np.asarray(spots, dtype=np.intp)
     scene = measurement.scene
+    check_visible(scene)
     carrier = SpectralCarrier(scene.image.wavelength_range_nm, scene.image.observer)
     world = assemble(in_laboratory(scene), carrier)
     eye = _Eye(world, measurement, measurement.weights(lit), (pixels, samples, eyes))

@@ -16,6 +16,7 @@ from lamplit.errors import LamplitError
 from lamplit.report.photometry.isocandela import middles
 
 if TYPE_CHECKING:
+    from lamplit.engine.cross_check import CrossCheck
     from lamplit.report.photometry.results import FunctionResults, Results
 
 Array = NDArray[np.float64]
@@ -31,6 +32,11 @@ SPOTS_HEADER = (
 REFLEX_HEADER = (
     "reflector", "entrance_V_deg", "entrance_H_deg", "observation_deg", "CIL_mcd_per_lx",
     "standard_error_mcd_per_lx",
+)  # fmt: skip
+CROSS_CHECK_FILE = "cross-check.csv"
+CROSS_CHECK_HEADER = (
+    "H_deg", "V_deg", "from_light_cd", "standard_error_from_light_cd", "from_receiver_cd",
+    "standard_error_from_receiver_cd", "apart_sigmas",
 )  # fmt: skip
 CANDELA_HEADER = (
     "function", "H_deg", "V_deg", "intensity_cd", "standard_error_cd", "X_cd", "Z_cd",
@@ -61,6 +67,15 @@ def reflex_csv(results: Results) -> bytes:
     """Return a line for each pair of angles at which a retro-reflector was measured."""
     rows = [(one.name, *vars(own).values()) for one in results.reflectors for own in one.readings]
     return _written(REFLEX_HEADER, rows)
+
+
+def cross_check_csv(both: CrossCheck) -> bytes:
+    """Return a line for each direction that was measured by both ways."""
+    columns = (
+        both.spot_h_deg, both.spot_v_deg, both.light_cd, both.light_standard_error_cd,
+        both.eye_cd, both.eye_standard_error_cd, both.sigmas,
+    )  # fmt: skip
+    return _written(CROSS_CHECK_HEADER, zip(*columns, strict=True))
 
 
 def candela_csv(results: Results) -> bytes:

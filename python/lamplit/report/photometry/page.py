@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import base64
 import io
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -71,11 +71,15 @@ def read_picture(path: Path, caption: str | None = None) -> Picture:
     return Picture(path.stem if caption is None else caption, held.getvalue())
 
 
-def render_page(results: Results, pictures: Iterable[Picture] = ()) -> str:
+def render_page(
+    results: Results,
+    pictures: Iterable[Picture] = (),
+    progress: Callable[[int, int], object] | None = None,
+) -> str:
     """Return the report on ``results`` as HTML: verdict first, then what it stands on.
 
     All text is escaped, pictures are data in the file, and a policy in its head forbids it to load
-    anything else.
+    anything else. ``progress`` is told of the plots (`draw_plots`).
     """
     from jinja2 import Environment, StrictUndefined
 
@@ -83,7 +87,7 @@ def render_page(results: Results, pictures: Iterable[Picture] = ()) -> str:
         autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     template = environment.from_string(Path(__file__).with_name("page.html").read_text("utf-8"))
-    plots = draw_plots(results)
+    plots = draw_plots(results, progress)
     return template.render(
         results=results,
         overall=None if results.outcome is None else MARKS[results.outcome],
