@@ -9,7 +9,7 @@ import threading
 from collections.abc import Generator
 from contextlib import contextmanager
 from types import FrameType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import typer
 
@@ -67,7 +67,7 @@ def stop_signals() -> Generator[Stop]:
         yield stop
         return
     watched = (signal.SIGINT, signal.SIGTERM)
-    before = {number: signal.getsignal(number) for number in watched}
+    before: dict[int, Any] = {number: signal.getsignal(number) for number in watched}
     for number in watched:
         signal.signal(number, interrupt)
     try:
