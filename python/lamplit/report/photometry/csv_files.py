@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from lamplit.colour.hue import hue
 from lamplit.errors import LamplitError
 from lamplit.report.photometry.isocandela import middles
 
@@ -28,6 +29,8 @@ POINTS_HEADER = (
 SPOTS_HEADER = (
     "function", "H_deg", "V_deg", "intensity_cd", "standard_error_cd", "X_cd", "Z_cd",
     "x", "y", "standard_error_x", "standard_error_y", "correlation_xy",
+    "dominant_wavelength_nm", "standard_error_dominant_wavelength_nm", "CCT_K",
+    "standard_error_CCT_K",
 )  # fmt: skip
 REFLEX_HEADER = (
     "reflector", "entrance_V_deg", "entrance_H_deg", "observation_deg", "CIL_mcd_per_lx",
@@ -125,7 +128,7 @@ def _spots(one: FunctionResults) -> Iterable[Sequence[object]]:
         yield (
             one.name, seen.spot_h_deg[at], seen.spot_v_deg[at], seen.spot_cd[at],
             seen.spot_standard_error_cd[at], seen.spot_xyz[at, 0], seen.spot_xyz[at, 2],
-            *xy[at], *errors[at], correlation[at],
+            *xy[at], *errors[at], correlation[at], *hue(xy[at], colours.covariance[at]),
         )  # fmt: skip
 
 

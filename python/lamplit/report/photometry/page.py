@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from lamplit.colour.hue import hue
 from lamplit.errors import LamplitError
 from lamplit.report.photometry import reflected, table
 from lamplit.report.photometry.plots import Plot, draw_plots
@@ -170,7 +171,7 @@ def _row(finding: Finding, count: int) -> dict[str, Any]:
 
 
 def _on_axis(one: FunctionResults) -> dict[str, str]:
-    """Return intensity and chromaticity at HV, if that was measured."""
+    """Return intensity and colour at HV, if that was measured."""
     seen = one.observed
     at = np.flatnonzero((seen.spot_h_deg == 0.0) & (seen.spot_v_deg == 0.0))
     if at.size == 0:
@@ -186,6 +187,12 @@ def _on_axis(one: FunctionResults) -> dict[str, str]:
             f"{value:.4f} ± {2.0 * error:.1g}"
             for value, error in zip(colours.xy[place], colours.standard_error[place], strict=True)
         )
+        dominant, nm, kelvin, error = hue(colours.xy[place], colours.covariance[place])
+        if np.isfinite(nm):
+            name = "dominant wavelength" if dominant > 0.0 else "complementary wavelength"
+            facts[name] = f"{abs(dominant):.1f} ± {2.0 * nm:.1g} nm"
+        if np.isfinite(error):
+            facts["CCT"] = f"{kelvin:.0f} ± {2.0 * error:.2g} K"
     return facts
 
 
