@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 import os
 import signal
+import struct
 import subprocess
 import sys
 import time
@@ -122,6 +123,26 @@ def test_what_no_eye_can_see_is_refused_before_walking(
     lambert.write_text(LAMBERT + rays)
     assert lamplit("measure", lambert, "-o", tmp_path / "out", "--cross-check") == 2
     assert "ray_files: the rays of a file are followed forward only" in capsys.readouterr().err
+
+
+def test_what_ray_files_lack_is_told_with_the_verdict(
+    lamplit: Callable[..., int], lambert: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A header of 60 lm over rays of 30 lm, and 100 rays that 5000 paths start from."""
+    rows = np.zeros((100, 7), dtype="<f4")
+    rows[:, [2, 5, 6]] = 1.0, 1.0, 0.3
+    header = struct.pack("<iI100s7f", 1010, 100, b"", 0.0, 60.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    header += struct.pack("<i13f4i", 4, *[0.0] * 13, 0, 1, 0, 0)
+    (tmp_path / "led.dat").write_bytes(header + rows.tobytes())
+    rays = '[[ray_files]]\nname = "led"\nfile = "led.dat"\nsource = "A"\n'
+    lambert.write_text(LAMBERT + rays)
+    out = tmp_path / "out"
+    assert lamplit("measure", lambert, "-o", out, "--paths", "5000") == 0
+    shown = " ".join(capsys.readouterr().out.split())
+    assert "led.dat: its header says 60 lm, and its rays have 30 lm" in shown
+    assert "led: its file has 100 rays, fewer than the paths that were walked" in shown
+    notices = json.loads((out / "measurement.json").read_text())["notices"]
+    assert sum("led" in notice for notice in notices) == 2
 
 
 def test_sigterm_before_walking_says_so_and_ends_with_its_number(

@@ -87,6 +87,7 @@ class KeptSpectrum(Kept):
     band_nm: float | None
     wavelengths_nm: list[float]
     values: list[float]
+    standard_errors: list[float] | None = None
 
 
 class KeptFunction(Kept):
@@ -260,12 +261,14 @@ def _kept_spectrum(one: shown.Spectrum) -> KeptSpectrum:
     return KeptSpectrum(
         name=one.name, unit=one.unit, band_nm=one.band_nm,
         wavelengths_nm=one.wavelengths_nm.tolist(), values=one.values.tolist(),
+        standard_errors=None if one.standard_error is None else one.standard_error.tolist(),
     )  # fmt: skip
 
 
 def _spectrum(one: KeptSpectrum) -> shown.Spectrum:
     wavelengths, values = np.array(one.wavelengths_nm), np.array(one.values)
-    return shown.Spectrum(one.name, wavelengths, values, one.unit, one.band_nm)
+    error = None if one.standard_errors is None else np.array(one.standard_errors)
+    return shown.Spectrum(one.name, wavelengths, values, one.unit, one.band_nm, error)
 
 
 def _function(one: KeptFunction, grid_xyz: Array, grid_error: Array) -> shown.FunctionResults:
