@@ -150,6 +150,26 @@ def test_a_lamp_is_measured_where_its_rules_ask_and_judged(
     assert all((tmp_path / "out" / name).is_file() for name in ("stop.ies", "position.ldt"))
 
 
+def test_nothing_in_a_name_steers_the_terminal_or_the_page(
+    lamplit: Callable[..., int], lamp: Path, meter: Meter, tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    """Controls, and marks that turn the direction of writing; the files keep the name."""
+    assert meter
+    odd = "st\u202eop\x1b[2J"
+    escaped = '"st\\u202eop\\u001b[2J"'
+    lamp.write_text(lamp.read_text().replace('name = "stop"', f"name = {escaped}"))
+    assert lamplit("check", lamp) in (0, 1)
+    assert lamplit("measure", lamp, "-o", tmp_path / "out") == 0
+    assert lamplit("measure", lamp, "-o", tmp_path / "out", "--rule", f"{odd}x=un-r148/S1") == 2
+    told = capsys.readouterr()
+    assert "\\u202eop\\x1b[2J: Stop lamp, steady (S1)" in told.out
+    assert lamplit("report", tmp_path / "out", "-o", tmp_path / "page.html") == 0
+    page = (tmp_path / "page.html").read_text()
+    assert all(own.isprintable() or own == "\n" for own in told.out + told.err + page)
+    assert numbers_in(tmp_path / "out")["functions"][0]["name"] == odd
+
+
 def test_stop_and_position_from_one_filament_are_compared_as_they_are_lit_together(
     lamplit: Callable[..., int], lamp: Path, meter: Meter, tmp_path: Path
 ) -> None:

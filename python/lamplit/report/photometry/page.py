@@ -13,6 +13,7 @@ import numpy as np
 
 from lamplit.colour.hue import hue
 from lamplit.errors import LamplitError
+from lamplit.printable import printable
 from lamplit.report.photometry import reflected, table
 from lamplit.report.photometry.plots import Plot, draw_plots
 from lamplit.report.photometry.results import tally
@@ -85,7 +86,11 @@ def render_page(
     from jinja2 import Environment, StrictUndefined
 
     environment = Environment(
-        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        finalize=_shown,
     )
     template = environment.from_string(Path(__file__).with_name("page.html").read_text("utf-8"))
     plots = draw_plots(results, progress)
@@ -101,6 +106,10 @@ def render_page(
         trust=_trust(results),
         paths=f"{results.paths:,}".replace(",", " "),
     )
+
+
+def _shown(value: Any) -> Any:
+    return printable(value) if isinstance(value, str) else value
 
 
 def _source(content: bytes) -> str:
