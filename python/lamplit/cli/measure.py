@@ -10,20 +10,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from lamplit.cli.measuring import (
-    Budget,
-    DistanceOption,
-    ErrorOption,
-    PathsOption,
-    ProductionOption,
-    ReceiverOption,
-    RuleOption,
-    TimeOption,
-    UntilDecidedOption,
-    Wanted,
-    measured,
-)
-from lamplit.cli.options import OutputOption, SceneArgument, SeedOption, SetOption, ThreadsOption
+from lamplit.cli.measuring import measured
+from lamplit.cli.measuring_options import MeasuringOptions
+from lamplit.cli.option_groups import grouped
+from lamplit.cli.options import OutputOption, SceneArgument
 from lamplit.cli.overrides import command_line
 from lamplit.cli.verdicts import print_verdicts
 
@@ -31,14 +21,11 @@ if TYPE_CHECKING:
     from lamplit.report.photometry.results import Results
 
 
+@grouped
 def measure(
     scene: SceneArgument,
     output: OutputOption,
-    rule: RuleOption = None,
-    paths: PathsOption = None,
-    error: ErrorOption = None,
-    time: TimeOption = None,
-    until_decided: UntilDecidedOption = False,
+    options: MeasuringOptions,
     cross_check: Annotated[
         bool,
         typer.Option(
@@ -46,12 +33,6 @@ def measure(
             help="Also measure the brightest test points by walks from the receiver, and compare.",
         ),
     ] = False,
-    distance: DistanceOption = None,
-    receiver: ReceiverOption = None,
-    production: ProductionOption = False,
-    seed: SeedOption = None,
-    threads: ThreadsOption = None,
-    set_: SetOption = None,
 ) -> None:
     """Measure the lamp in SCENE: candela and colour per direction, and whether it passes.
 
@@ -65,12 +46,9 @@ def measure(
     from lamplit.report.photometry.kept import MEASUREMENT_FILE
     from lamplit.report.progress import Progress
 
-    wanted = Wanted(
-        scene, rule or (), distance, receiver, production, seed, set_ or (), cross_check
-    )
+    wanted = options.wanted(scene, cross_check=cross_check)
     prepare_output(output, (MEASUREMENT_FILE,))
-    budget = Budget(paths, error, time, until_decided)
-    found = measured(wanted, budget, threads=threads)
+    found = measured(wanted, options.budget, threads=options.threads)
     results = replace(found.results, command=command_line(sys.argv))
     with Progress("Drawing") as progress:
         files = write_measurement(results, output, progress)
