@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 import numpy as np
-from scipy.stats import t as student_t
 
 import lamplit as ll
 from lamplit.engine import Plane
@@ -17,7 +16,6 @@ from lamplit.lamps import write_lamp
 from lamplit.photometry.observed import Observed
 from lamplit.rules import find_rule, judge
 from lamplit.scene import Scene, parse_scene
-from validation.agreement import ALPHA
 from validation.closed_forms import looking
 from validation.registry import Case, Finding, add, case
 
@@ -138,24 +136,19 @@ def both_ways(lamp: str) -> Iterator[Finding]:
         found = ll.measure(scene, spots=_SPOTS, grid=_GRID, receiver_deg=5.0, paths=1 << 19)
         every = list(range(len(_SPOTS)))
         check = found.cross_check(spots=every, pixels=32, samples=2, eyes=14, rounds=_ROUNDS)
-    # Of m points one may exceed what belongs to 1 − (1 − α)^(1/m): Šidák. Most of σ is the eye's,
-    # from few rounds: Student's t.
-    level = 1.0 - (1.0 - ALPHA) ** (1.0 / len(_SPOTS))
-    quantile: Any = student_t.ppf
-    threshold = float(quantile(1.0 - level / 2.0, _ROUNDS - 1))
     for at, (h, v) in enumerate(_SPOTS):
         sigma = float(np.hypot(check.light_standard_error_cd[at], check.eye_standard_error_cd[at]))
-        apart = float(check.sigmas[at])
+        apart, light_cd = float(check.sigmas[at]), float(check.light_cd[at])
+        seen_percent = 100.0 * (check.allowed + 0.84) * sigma / light_cd
         yield Finding(
             f"I at H {h:g}°, V {v:g}°, from the eye and from the light",
             float(check.eye_cd[at]),
-            float(check.light_cd[at]),
+            light_cd,
             sigma,
             unit="cd",
-            note=f"{abs(apart):.2f} σ apart, {threshold:.2f} allowed; a difference of "
-            f"{100.0 * (threshold + 0.84) * sigma / float(check.light_cd[at]):.2g} % would be seen "
-            "four times in five",
-            passed=abs(apart) <= threshold,
+            note=f"{abs(apart):.2f} σ apart, {check.allowed:.2f} allowed; a difference of "
+            f"{seen_percent:.2g} % would be seen four times in five",
+            passed=abs(apart) <= check.allowed,
         )
 
 
@@ -164,7 +157,7 @@ for _lamp_name in _LAMPS:
         Case(
             f"both-ways-{_lamp_name}",
             f"T7: {_lamp_name}, from the light and from the eye",
-            f"the other way of walking; t-test, α = {ALPHA:g} over all points (Šidák)",
+            "the other way of walking; Student's t, α = 0.01 over all points (Šidák)",
             GROUP,
             lambda name=_lamp_name: both_ways(name),
         )

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from lamplit.engine.measurement import Measurement
 
 _HEADINGS = ("H °", "V °", "cd from the light", "2 σ", "cd from the receiver", "2 σ", "apart")
-#: By chance, one of three is farther apart than this in a hundred cross-checks or so.
-_FAR_SIGMAS = 3.0
 
 
 def cross_checked(measurement: Measurement, directory: Path) -> None:
@@ -63,7 +61,7 @@ def _show(both: CrossCheck) -> None:
             f"{abs(apart):.1f} σ",
         )
     console.print(table)
-    far = int((abs(both.sigmas) > _FAR_SIGMAS).sum())
+    far = int((abs(both.sigmas) > both.allowed).sum())
     console.print(
         "\nboth ways agree within what chance explains"
         if far == 0

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 _M2_PER_MM2 = 1e-6
+#: How often the farthest of all points may be called apart by chance.
+_ALPHA = 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +54,18 @@ class CrossCheck:
         off = self.light_cd - self.eye_cd
         sigma = np.hypot(self.light_standard_error_cd, self.eye_standard_error_cd)
         return np.divide(off, sigma, out=np.zeros_like(off), where=off != 0.0)
+
+    @property
+    def allowed(self) -> float:
+        """How many standard errors the farthest of p points is apart by chance in 1 of 100.
+
+        By Student's t, since most of σ comes from few rounds, and over all points (Šidák).
+        """
+        from scipy.stats import t as student_t
+
+        quantile: Any = student_t.ppf
+        each = 1.0 - (1.0 - _ALPHA) ** (1.0 / max(1, len(self.light_cd)))
+        return float(quantile(1.0 - each / 2.0, self.rounds - 1))
 
 
 def check_visible(scene: Scene) -> None:
