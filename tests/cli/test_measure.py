@@ -98,7 +98,8 @@ class Meter:
             emitted_xyz=np.array([np.zeros(3), 100.0 * weights]),
             out_xyz=np.tile(40.0 * weights, (BATCHES, 2, 1)),
             spot_xyz=intensity(*spots.T), grid_xyz=intensity(grid_h, grid_v), plane_xyz=None,
-            spot_spectra=np.ones((2, len(spots), 4)), out_spectra=np.ones((2, 4)),
+            spot_spectra_by_batch=np.ones((BATCHES, 2, len(spots), 4)),
+            out_spectra_by_batch=np.ones((BATCHES, 2, 4)),
             grid_spectra=None, band_centres_nm=np.array([430.0, 530.0, 630.0, 730.0]),
             grid_band_centres_nm=np.empty(0), paths=paths,
             ledgers={"filament": LumenLedger(100.0, 40.0, {"lens": 59.0}, 1.0, 0.0, 0.0, 0.0)},
@@ -110,7 +111,7 @@ class Meter:
 def meter(monkeypatch: pytest.MonkeyPatch) -> Meter:
     """Put a meter in the engine's place, and draw no plots, which take seconds."""
     found = Meter()
-    monkeypatch.setattr("lamplit.report.photometry.files.draw_plots", lambda _: [])
+    monkeypatch.setattr("lamplit.report.photometry.files.draw_plots", lambda *_: [])
     monkeypatch.setattr(engine, "measure", found.measure)
     return found
 
@@ -147,6 +148,26 @@ def test_a_lamp_is_measured_where_its_rules_ask_and_judged(
     assert "100 lm emitted, 40 lm (40 %) leave the lamp" in told
     assert "stop: Stop lamp, steady (S1), un-r148/S1" in told
     assert all((tmp_path / "out" / name).is_file() for name in ("stop.ies", "position.ldt"))
+
+
+def test_nothing_in_a_name_steers_the_terminal_or_the_page(
+    lamplit: Callable[..., int], lamp: Path, meter: Meter, tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    """Controls, and marks that turn the direction of writing; the files keep the name."""
+    assert meter
+    odd = "st\u202eop\x1b[2J"
+    escaped = '"st\\u202eop\\u001b[2J"'
+    lamp.write_text(lamp.read_text().replace('name = "stop"', f"name = {escaped}"))
+    assert lamplit("check", lamp) in (0, 1)
+    assert lamplit("measure", lamp, "-o", tmp_path / "out") == 0
+    assert lamplit("measure", lamp, "-o", tmp_path / "out", "--rule", f"{odd}x=un-r148/S1") == 2
+    told = capsys.readouterr()
+    assert "\\u202eop\\x1b[2J: Stop lamp, steady (S1)" in told.out
+    assert lamplit("report", tmp_path / "out", "-o", tmp_path / "page.html") == 0
+    page = (tmp_path / "page.html").read_text()
+    assert all(own.isprintable() or own == "\n" for own in told.out + told.err + page)
+    assert numbers_in(tmp_path / "out")["functions"][0]["name"] == odd
 
 
 def test_stop_and_position_from_one_filament_are_compared_as_they_are_lit_together(
@@ -286,7 +307,7 @@ def test_a_function_whose_groups_are_dark_is_told_so(
     assert numbers_in(tmp_path)["outcome"] == "fail"
 
 
-def test_ctrl_c_before_walking_says_that_nothing_is_written(
+def test_ctrl_c_before_walking_says_so(
     lamplit: Callable[..., int], lamp: Path, tmp_path: Path,
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch,
 ) -> None:  # fmt: skip
@@ -295,7 +316,7 @@ def test_ctrl_c_before_walking_says_that_nothing_is_written(
 
     monkeypatch.setattr("lamplit.scene.load_scene", stopped)
     assert lamplit("measure", lamp, "-o", tmp_path) == 130
-    assert capsys.readouterr().err == "stopped; nothing is written\n"
+    assert capsys.readouterr().err == "stopped before anything was finished\n"
 
 
 def test_a_rule_may_be_for_one_function_and_have_options(lamp: Path) -> None:

@@ -157,7 +157,7 @@ def test_a_lamp_may_shine_and_reflect(
 ) -> None:
     from lamplit.photometry.rays import RaySet, write_tm25
 
-    monkeypatch.setattr("lamplit.report.photometry.files.draw_plots", lambda _: [])
+    monkeypatch.setattr("lamplit.report.photometry.files.draw_plots", lambda *_: [])
     ways = np.array([[0.0, 0.0, 1.0], [0.1, 0.0, 0.995]])
     rays = RaySet(np.full((2, 3), 5.0), ways, np.array([3.0, 1.0]), quantity="luminous")
     write_tm25(tmp_path / "led.tm25ray", rays)

@@ -139,8 +139,8 @@ def test_options_follow_a_rule_in_its_name_or_come_from_what_a_scene_says() -> N
     assert (night.options["period"], night.side, night.id) == ("night", "left", "un-r148/S2")
     with pytest.raises(RuleError, match="no option 'perod'; did you mean 'period'"):
         find_rule("un-r148/S2?perod=night")
-    stop = find_rule("fmvss-108/stop").where_known(sections=2, lamps=1, side="left")
-    assert stop.options == {"sections": "2", "lamps": "1", "mounting": "normal"}
+    stop = find_rule("fmvss-108/stop").where_known(sections=2, assembly="D", side="left")
+    assert stop.options == {"sections": "2", "backup_lamps": "1", "mounting": "normal"}
     assert find_rule("un-r148/S1").where_known(sections=2, side=None).side == "either"
 
 

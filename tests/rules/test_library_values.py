@@ -96,7 +96,7 @@ def test_axis_and_maxima_of_r148_are_those_of_its_tables(name: str) -> None:
     assert minima(rule)[0.0, 0.0] == axis
     assert limits(rule, "maximum")[0] == single
     if assembly is not None:
-        assert limits(rule.under(lamps=2), "maximum")[0] == assembly
+        assert limits(rule.under(assembly="D"), "maximum")[0] == assembly
     if night is not None:
         assert limits(rule.under(period="night"), "maximum")[0] == night
 
@@ -217,7 +217,7 @@ def test_the_high_mounted_stop_lamp_of_table_xv_is_reproduced() -> None:
 
 def test_a_single_backup_lamp_needs_twice_what_each_of_two_needs() -> None:
     one = find_rule("fmvss-108/backup")
-    rule = one.under(lamps=2)
+    rule = one.under(backup_lamps=2)
     assert minima(rule) == everywhere(A3_V)
     assert minima(one) == {where: 2 * cd for where, cd in everywhere(A3_V).items()}
     for own, factor in ((rule, 1), (one, 2)):

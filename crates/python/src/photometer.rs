@@ -161,15 +161,35 @@ impl Photometer {
         shaped(py, values, [batches.len(), groups, count, 3])
     }
 
-    /// (groups, receivers, bands), per path and over all batches.
+    /// (batches, groups, receivers, bands) of what has the bands of spots, per path.
+    fn bands_by_batch<'py>(
+        &self,
+        py: Python<'py>,
+        of: impl Fn(&GroupSums) -> &[f64],
+    ) -> PyResult<Bound<'py, PyArray4<f64>>> {
+        let meter = self.meter();
+        let per_lane = meter.receivers().spot_bands;
+        let batches = meter.batches();
+        let (groups, count) = (batches[0].groups.len(), of(&batches[0].groups[0]).len());
+        let mut values = Vec::with_capacity(batches.len() * groups * count);
+        for batch in batches {
+            // Each part of a lane has its share of the phases, and so of the paths.
+            let share = per_lane as f64 / f64::from(batch.paths.max(1));
+            values.extend(batch.groups.iter().flat_map(&of).map(|sum| sum * share));
+        }
+        let bands = per_lane * LANES;
+        let receivers = count.checked_div(bands).unwrap_or(0);
+        shaped(py, values, [batches.len(), groups, receivers, bands])
+    }
+
+    /// (groups, receivers, bands) of the grid's cells, per path and over all batches.
     fn bands<'py>(
         &self,
         py: Python<'py>,
-        per_lane: impl Fn(&film::Receivers) -> usize,
         of: impl Fn(&GroupSums) -> &[f64],
     ) -> PyResult<Bound<'py, PyArray3<f64>>> {
         let meter = self.meter();
-        let per_lane = per_lane(meter.receivers());
+        let per_lane = meter.receivers().cell_bands;
         let batches = meter.batches();
         let bands = per_lane * LANES;
         let paths: f64 = batches.iter().map(|batch| f64::from(batch.paths)).sum();
@@ -302,19 +322,19 @@ impl Photometer {
         self.tristimulus(py, |sums| &sums.map)
     }
 
-    /// The spectral flux that leaves the scene, (groups, 1, bands).
-    fn out_bands<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        self.bands(py, |receivers| receivers.spot_bands, |sums| &sums.out_bands)
+    /// The spectral flux that leaves the scene, (batches, groups, 1, bands).
+    fn out_bands<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray4<f64>>> {
+        self.bands_by_batch(py, |sums| &sums.out_bands)
     }
 
-    /// The spectral flux into each spot, (groups, spots, bands).
-    fn spot_bands<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        self.bands(py, |receivers| receivers.spot_bands, |sums| &sums.spot_bands)
+    /// The spectral flux into each spot, (batches, groups, spots, bands).
+    fn spot_bands<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray4<f64>>> {
+        self.bands_by_batch(py, |sums| &sums.spot_bands)
     }
 
-    /// The spectral flux into each cell of the grid, (groups, cells, bands).
+    /// The spectral flux into each cell of the grid, over all batches, (groups, cells, bands).
     fn cell_bands<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        self.bands(py, |receivers| receivers.cell_bands, |sums| &sums.cell_bands)
+        self.bands(py, |sums| &sums.cell_bands)
     }
 
     /// Where the luminous flux of a light group went, in lm, or None where nothing was walked:

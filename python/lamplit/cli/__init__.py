@@ -12,6 +12,7 @@ import typer
 
 from lamplit.cli.commands import LazyCommands
 from lamplit.errors import LamplitError
+from lamplit.printable import printable
 
 #: How a run ends. A shell adds 128 to the number of the signal that stopped a program.
 EXIT_SOUND, EXIT_INTERNAL_FAULT, EXIT_BAD_INPUT, EXIT_INTERRUPTED = 0, 1, 2, 130
@@ -82,5 +83,5 @@ def _internal_fault(fault: BaseException) -> int:
 
 
 def _fail(message: str, code: int) -> int:
-    print(f"error: {' '.join(message.split())}", file=sys.stderr)
+    print(f"error: {printable(' '.join(message.split()))}", file=sys.stderr)
     return code

@@ -9,6 +9,7 @@ import typer
 
 from lamplit.cli.options import SceneArgument, SetOption
 from lamplit.cli.overrides import overrides, scene_file
+from lamplit.printable import printable
 
 if TYPE_CHECKING:
     from lamplit.scene import Report, Scene
@@ -49,12 +50,18 @@ def _tell(scene: Scene, report: Report) -> None:
                 "yes" if mesh.closed else f"no, {mesh.open_edges} open edges",
             )
         )
-        objects.add_row(Text(thing.name), thing.kind, Text(thing.material_name), count, closed)
+        objects.add_row(
+            Text(printable(thing.name)),
+            thing.kind,
+            Text(printable(thing.material_name)),
+            count,
+            closed,
+        )
     console.print(objects)
     console.print()
     for finding in report.findings:
         level = Text(f"{finding.level:8}", style=_STYLES[finding.level])
-        console.print(level, Text(f"{finding.subject}: {finding.message}"))
+        console.print(level, Text(printable(f"{finding.subject}: {finding.message}")))
     memory = report.memory
     console.print(
         f"memory   about {memory.total_bytes / 2**20:.0f} MiB: meshes "

@@ -10,10 +10,19 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from lamplit.printable import printable
+
 if TYPE_CHECKING:
     from rich.console import Console
 
     from lamplit.engine.image import Image
+
+
+def shown(text: str) -> str:
+    """Return text from a file as rich prints it: without markup, and with nothing unseen in it."""
+    from rich.markup import escape
+
+    return escape(printable(text))
 
 
 def picture_rows(numbers: Mapping[str, Any]) -> dict[str, str]:
@@ -43,15 +52,13 @@ def show_results(
     image: Image, numbers: Mapping[str, str], directory: Path, files: Mapping[str, str]
 ) -> None:
     """Print ``numbers`` about ``image``, and ``files`` in ``directory`` with what is in each."""
-    from rich.markup import escape
-
     from lamplit.report.losses import Losses
 
     console = show_table(_heading(image), numbers, directory, files)
     for notice in image.notices:
-        console.print(f"\n[cyan]notice: {escape(notice)}[/cyan]")
+        console.print(f"\n[cyan]notice: {shown(notice)}[/cyan]")
     for warning in Losses.of(image).warnings():
-        console.print(f"\n[yellow]warning: {escape(warning)}[/yellow]")
+        console.print(f"\n[yellow]warning: {shown(warning)}[/yellow]")
     if not image.complete:
         console.print(
             f"\n[yellow]stopped with {image.samples} of {image.samples_asked} samples per pixel; "
@@ -64,16 +71,15 @@ def show_table(
 ) -> Console:
     """Print ``heading``, ``numbers``, and ``files`` in ``directory`` with what is in each."""
     from rich.console import Console
-    from rich.markup import escape
 
     console = Console(highlight=False, soft_wrap=True)
-    console.print(f"\n[bold]{escape(heading)}[/bold]")
+    console.print(f"\n[bold]{shown(heading)}[/bold]")
     for title, lines in (("", numbers), (f"Files in {directory}", files)):
         if title:
-            console.print(f"\n{escape(title)}")
+            console.print(f"\n{shown(title)}")
         width = max(map(len, lines), default=0) + 3
         for name, text in lines.items():
-            console.print(f"  {escape(name.ljust(width))}[dim]{escape(text)}[/dim]")
+            console.print(f"  {shown(name.ljust(width))}[dim]{shown(text)}[/dim]")
     return console
 
 

@@ -55,16 +55,19 @@ class LazyCommands(TyperGroup):
         return typer.main.get_command(single)
 
     def invoke(self, ctx: Any) -> Any:
-        """Run a command; say so where a signal ends it before it has anything to keep.
+        """Run a command; say so where a signal ends it that the command itself did not catch.
 
         Raises:
-            Exit: With 130, after Ctrl-C.
+            Exit: With 130 after Ctrl-C, 143 after SIGTERM.
         """
-        try:
-            return super().invoke(ctx)
-        except KeyboardInterrupt:
-            print("stopped; nothing is written", file=sys.stderr)
-            raise typer.Exit(130) from None
+        from lamplit.cli.stopping import stop_signals
+
+        with stop_signals() as stop:
+            try:
+                return super().invoke(ctx)
+            except KeyboardInterrupt:
+                print("stopped before anything was finished", file=sys.stderr)
+                raise typer.Exit(stop.exit_code) from None
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
         """Write the list of commands without importing them."""

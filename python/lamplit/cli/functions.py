@@ -183,7 +183,7 @@ def _rule(scene: Scene, text: str | None, function: LampFunction | None) -> Rule
         )
     if function is None:
         return rule
-    said = {"sections": function.sections, "lamps": function.lamps, "side": function.side}
+    said = {"sections": function.sections, "assembly": function.assembly, "side": function.side}
     options = text.partition("?")[2]
     kept = {key: choice for key, choice in said.items() if f"{key}=" not in options}
     return rule.where_known(**kept)

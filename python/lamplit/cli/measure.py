@@ -10,49 +10,29 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from lamplit.cli.measuring import (
-    Budget,
-    DistanceOption,
-    ErrorOption,
-    PathsOption,
-    ProductionOption,
-    ReceiverOption,
-    RuleOption,
-    TimeOption,
-    UntilDecidedOption,
-    Wanted,
-    measured,
-)
-from lamplit.cli.options import OutputOption, SceneArgument, SeedOption, SetOption, ThreadsOption
+from lamplit.cli.measuring import measured
+from lamplit.cli.measuring_options import MeasuringOptions
+from lamplit.cli.option_groups import grouped
+from lamplit.cli.options import OutputOption, SceneArgument
 from lamplit.cli.overrides import command_line
 from lamplit.cli.verdicts import print_verdicts
 
 if TYPE_CHECKING:
-    from lamplit.engine.measurement import Measurement
     from lamplit.report.photometry.results import Results
 
 
+@grouped
 def measure(
     scene: SceneArgument,
     output: OutputOption,
-    rule: RuleOption = None,
-    paths: PathsOption = None,
-    error: ErrorOption = None,
-    time: TimeOption = None,
-    until_decided: UntilDecidedOption = False,
+    options: MeasuringOptions,
     cross_check: Annotated[
         bool,
         typer.Option(
             "--cross-check",
-            help="Also measure the test points by walks from the receiver, and compare.",
+            help="Also measure the brightest test points by walks from the receiver, and compare.",
         ),
     ] = False,
-    distance: DistanceOption = None,
-    receiver: ReceiverOption = None,
-    production: ProductionOption = False,
-    seed: SeedOption = None,
-    threads: ThreadsOption = None,
-    set_: SetOption = None,
 ) -> None:
     """Measure the lamp in SCENE: candela and colour per direction, and whether it passes.
 
@@ -60,16 +40,18 @@ def measure(
     the test points and the verdict. Ctrl-C keeps the paths that are done. Exit code 0: it was
     measured, whatever the verdict; measurement.json has the verdict as "outcome".
     """
+    from lamplit.cli.cross_checking import cross_checked
     from lamplit.report.atomic import prepare_output
     from lamplit.report.photometry.files import write_measurement
     from lamplit.report.photometry.kept import MEASUREMENT_FILE
+    from lamplit.report.progress import Progress
 
-    wanted = Wanted(scene, rule or (), distance, receiver, production, seed, set_ or ())
+    wanted = options.wanted(scene, cross_check=cross_check)
     prepare_output(output, (MEASUREMENT_FILE,))
-    budget = Budget(paths, error, time, until_decided)
-    found = measured(wanted, budget, threads=threads)
+    found = measured(wanted, options.budget, threads=options.threads)
     results = replace(found.results, command=command_line(sys.argv))
-    files = write_measurement(results, output)
+    with Progress("Drawing") as progress:
+        files = write_measurement(results, output, progress)
     _tell(output, results, files)
     if found.interrupted:
         raise typer.Exit(found.stop.exit_code)
@@ -77,7 +59,7 @@ def measure(
         if found.measurement is None:
             print("\nno function is lit, and so there is nothing to cross-check")
         else:
-            _compare(found.measurement)
+            cross_checked(found.measurement, output)
 
 
 def _tell(output: Path, results: Results, files: dict[str, str]) -> None:
@@ -101,38 +83,3 @@ def _tell(output: Path, results: Results, files: dict[str, str]) -> None:
         console.print(
             "\n[yellow]stopped before all was done; what is done is in the files[/yellow]"
         )
-
-
-def _compare(measurement: Measurement) -> None:
-    """Print the brightest test points by both ways: walked from the light, and from the eye."""
-    from rich.console import Console
-    from rich.table import Table
-
-    from lamplit.report.photometry.style import cd
-    from lamplit.report.photometry.table import angle
-
-    console = Console(highlight=False, soft_wrap=True)
-    console.print("\n[bold]Cross-check[/bold], all light: from the light, and from the receiver\n")
-    both = measurement.cross_check()
-    table = Table(box=None, header_style="bold", pad_edge=False)
-    for heading in (
-        "H °",
-        "V °",
-        "cd from the light",
-        "2 σ",
-        "cd from the receiver",
-        "2 σ",
-        "apart",
-    ):
-        table.add_column(heading, justify="right", no_wrap=True)
-    for at, apart in enumerate(both.sigmas):
-        table.add_row(
-            angle(float(both.spot_h_deg[at])),
-            angle(float(both.spot_v_deg[at])),
-            cd(float(both.light_cd[at])),
-            f"± {2.0 * both.light_standard_error_cd[at]:.2g}",
-            cd(float(both.eye_cd[at])),
-            f"± {2.0 * both.eye_standard_error_cd[at]:.2g}",
-            f"{abs(apart):.1f} σ",
-        )
-    console.print(table)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from lamplit.cli.functions import AskedReflector
-    from lamplit.cli.measuring import Budget
+    from lamplit.cli.measuring_options import Budget
     from lamplit.engine.reflectors import ReflexMeasurement
     from lamplit.report.photometry.results import ReflectorResults
     from lamplit.scene import Scene

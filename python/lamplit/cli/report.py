@@ -10,18 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from lamplit.cli.measuring import (
-    Budget,
-    DistanceOption,
-    ErrorOption,
-    PathsOption,
-    ProductionOption,
-    ReceiverOption,
-    RuleOption,
-    TimeOption,
-    UntilDecidedOption,
-)
-from lamplit.cli.options import SeedOption, SetOption, ThreadsOption
+from lamplit.cli.measuring_options import MeasuringOptions
+from lamplit.cli.option_groups import grouped
 from lamplit.cli.overrides import command_line
 from lamplit.errors import LamplitError, OutputError
 
@@ -29,6 +19,7 @@ if TYPE_CHECKING:
     from lamplit.report.photometry.results import Results
 
 
+@grouped
 def report(
     place: Annotated[
         Path,
@@ -40,6 +31,7 @@ def report(
     output: Annotated[
         Path, typer.Option("-o", "--output", metavar="FILE", help="The page, a .html file.")
     ],
+    options: MeasuringOptions,
     picture: Annotated[
         list[Path] | None,
         typer.Option(
@@ -49,17 +41,6 @@ def report(
             "`lamplit render` and `lamplit mix` that lie in DIR.",
         ),
     ] = None,
-    rule: RuleOption = None,
-    paths: PathsOption = None,
-    error: ErrorOption = None,
-    time: TimeOption = None,
-    until_decided: UntilDecidedOption = False,
-    distance: DistanceOption = None,
-    receiver: ReceiverOption = None,
-    production: ProductionOption = False,
-    seed: SeedOption = None,
-    threads: ThreadsOption = None,
-    set_: SetOption = None,
 ) -> None:
     """Write FILE: verdicts first, then pictures, test points, plots, spectra, energy, provenance.
 
@@ -69,26 +50,26 @@ def report(
     from lamplit.report.atomic import prepare_output, write_bytes
     from lamplit.report.photometry.kept import MEASUREMENT_FILE
     from lamplit.report.photometry.page import pictures_in, read_picture, render_page
+    from lamplit.report.progress import Progress
 
     if output.suffix.lower() not in (".html", ".htm"):
         raise OutputError("a report is a .html file; name one with -o", file=output)
     prepare_output(output.parent, (output.name,))
     shown = [read_picture(path) for path in picture or ()]
-    budget = Budget(paths, error, time, until_decided)
     stop = None
     if place.is_dir() and (place / MEASUREMENT_FILE).exists():
-        options = (rule, distance, receiver, seed, threads, set_, production or None)
-        _refuse(budget, given=any(value is not None for value in options))
+        _refuse(options)
         results = _kept(place)
         shown = shown or pictures_in(place)
     else:
-        from lamplit.cli.measuring import Wanted, measured
+        from lamplit.cli.measuring import measured
 
-        wanted = Wanted(place, rule or (), distance, receiver, production, seed, set_ or ())
-        found = measured(wanted, budget, threads=threads)
+        found = measured(options.wanted(place), options.budget, threads=options.threads)
         results, stop = found.results, found.stop
         results = replace(results, command=command_line(sys.argv))
-    write_bytes(output, render_page(results, shown).encode())
+    with Progress("Drawing") as progress:
+        page = render_page(results, shown, progress)
+    write_bytes(output, page.encode())
     _tell(results, output)
     if stop is not None and stop.signal_number is not None:
         raise typer.Exit(stop.exit_code)
@@ -100,13 +81,13 @@ def _kept(place: Path) -> Results:
     return read_results(place)
 
 
-def _refuse(budget: Budget, *, given: bool) -> None:
+def _refuse(options: MeasuringOptions) -> None:
     """Refuse options that a folder which is measured already cannot follow.
 
     Raises:
         LamplitError: There are any.
     """
-    if given or budget != Budget():
+    if options != MeasuringOptions():
         raise LamplitError(
             "the folder is measured already, and only -o and --picture apply; name its scene to "
             "measure anew"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 OR MIT
-"""SIGTERM stops a render as Ctrl-C does: what is done is kept."""
+"""SIGTERM stops a command as Ctrl-C does: what is done is kept."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import threading
 from collections.abc import Generator
 from contextlib import contextmanager
 from types import FrameType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import typer
 
@@ -50,18 +50,26 @@ class Stop:
 
 @contextmanager
 def stop_signals() -> Generator[Stop]:
-    """Turn SIGINT and SIGTERM into KeyboardInterrupt, and remember which it was."""
+    """Turn SIGINT and SIGTERM into KeyboardInterrupt, and remember which it was.
+
+    One may stand within another: all of them hear the signal.
+    """
     stop = Stop()
 
     def interrupt(number: int, frame: FrameType | None) -> None:
         stop.signal_number = number
+        outer = before[number]
+        if callable(outer):
+            outer(number, frame)
         raise KeyboardInterrupt
 
     if threading.current_thread() is not threading.main_thread():
         yield stop
         return
     watched = (signal.SIGINT, signal.SIGTERM)
-    before = {number: signal.signal(number, interrupt) for number in watched}
+    before: dict[int, Any] = {number: signal.getsignal(number) for number in watched}
+    for number in watched:
+        signal.signal(number, interrupt)
     try:
         yield stop
     finally:

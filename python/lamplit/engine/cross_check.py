@@ -9,8 +9,9 @@ receiver, which reads E·d² with E = ∫ L cos⁴ θ over its picture at the di
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,17 +19,18 @@ from numpy.typing import NDArray
 from lamplit import _core
 from lamplit.engine.assembly import assemble
 from lamplit.engine.carrier import SpectralCarrier
-from lamplit.errors import LamplitError
+from lamplit.errors import LamplitError, SceneError
 
 if TYPE_CHECKING:
     from lamplit.engine.measurement import Lit, Measurement
     from lamplit.engine.receivers import Goniometer
+    from lamplit.scene import Scene
 
 Array = NDArray[np.float64]
 
-#: Independent rounds of pictures: their spread is the standard error.
-_ROUNDS = 8
 _M2_PER_MM2 = 1e-6
+#: How often the farthest of all points may be called apart by chance.
+_ALPHA = 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +45,8 @@ class CrossCheck:
     #: (p,), in cd, walked from the eye.
     eye_cd: Array
     eye_standard_error_cd: Array
+    #: Independent rounds of the eye's walks, whose spread is its standard error.
+    rounds: int = 8
 
     @property
     def sigmas(self) -> Array:
@@ -50,6 +54,33 @@ class CrossCheck:
         off = self.light_cd - self.eye_cd
         sigma = np.hypot(self.light_standard_error_cd, self.eye_standard_error_cd)
         return np.divide(off, sigma, out=np.zeros_like(off), where=off != 0.0)
+
+    @property
+    def allowed(self) -> float:
+        """How many standard errors the farthest of p points is apart by chance in 1 of 100.
+
+        By Student's t, since most of σ comes from few rounds, and over all points (Šidák).
+        """
+        from scipy.stats import t as student_t
+
+        quantile: Any = student_t.ppf
+        each = 1.0 - (1.0 - _ALPHA) ** (1.0 / max(1, len(self.light_cd)))
+        return float(quantile(1.0 - each / 2.0, self.rounds - 1))
+
+
+def check_visible(scene: Scene) -> None:
+    """Check that an eye can see all that shines in ``scene``.
+
+    Raises:
+        SceneError: Rays of a file start in no surface that an eye could see.
+    """
+    if scene.ray_files:
+        raise SceneError(
+            "the rays of a file are followed forward only: no eye sees them, and so there is "
+            "nothing to cross-check; leave --cross-check out",
+            file=scene.path,
+            where="ray_files",
+        )
 
 
 def cross_check(
@@ -60,39 +91,50 @@ def cross_check(
     pixels: int = 96,
     samples: int = 16,
     eyes: int = 2,
+    rounds: int = 8,
+    progress: Callable[[int, int], object] | None = None,
 ) -> CrossCheck:
     """Return both intensities of ``spots`` (their numbers; None: the brightest three).
 
-    ``eyes`` places in the receiver's aperture in each of 8 rounds look at the lamp in pictures of
-    ``pixels`` on the longer side, with ``samples`` each. What shines behind smooth glass and is
-    smaller than a pixel is found by chance: a large standard error says so.
+    ``eyes`` places in the receiver's aperture in each of ``rounds`` rounds look at the lamp in
+    pictures of ``pixels`` on the longer side, with ``samples`` each. What shines behind smooth
+    glass and is smaller than a pixel is found by chance: a large standard error says so.
+    ``progress`` is called with the rounds done and to do, of all spots together.
 
     Raises:
-        LamplitError: There is no spot, or the light was not the scene's own.
+        LamplitError: There is no spot, fewer than two rounds, or light that no eye can see.
+        KeyboardInterrupt: Ctrl-C; half of a comparison says nothing.
     """
     from lamplit.engine.measure import in_laboratory
 
     if measurement.light is not None:
         raise LamplitError("only what shines in the scene can be seen by an eye; leave light out")
+    if rounds < 2:
+        raise LamplitError(f"a standard error takes 2 rounds or more, not {rounds}")
     seen = measurement.observed(lit)
     if seen.spot_cd.size == 0:
         raise LamplitError("there are no spots to check; measure some")
     brightest = np.argsort(seen.spot_cd)[::-1][:3]
     chosen = np.sort(brightest) if spots is None else np.asarray(spots, dtype=np.intp)
     scene = measurement.scene
+    check_visible(scene)
     carrier = SpectralCarrier(scene.image.wavelength_range_nm, scene.image.observer)
     world = assemble(in_laboratory(scene), carrier)
     eye = _Eye(world, measurement, measurement.weights(lit), (pixels, samples, eyes))
-    found = np.array(
-        [eye.intensity(direction) for direction in measurement.goniometer.directions()[chosen]]
-    )
+    towards = measurement.goniometer.directions()[chosen]
+    read = np.zeros((len(chosen), rounds))
+    for at, turn in np.ndindex(*read.shape):
+        read[at, turn] = eye.intensity(towards[at], turn)
+        if progress is not None:
+            progress(at * rounds + turn + 1, read.size)
     return CrossCheck(
         seen.spot_h_deg[chosen],
         seen.spot_v_deg[chosen],
         seen.spot_cd[chosen],
         seen.spot_standard_error_cd[chosen],
-        found[:, 0],
-        found[:, 1],
+        read.mean(axis=1),
+        read.std(axis=1, ddof=1) / np.sqrt(rounds),
+        rounds,
     )
 
 
@@ -121,13 +163,9 @@ class _Eye:
         share = np.array([[i & 1, i >> 1 & 1, i >> 2 & 1] for i in range(8)], dtype=np.float64)
         self._corners: Array = low + share * (high - low)
 
-    def intensity(self, direction: Array) -> tuple[float, float]:
-        """Return the intensity towards a receiver, and its standard error."""
-        rounds = [
-            np.mean([self._look(way, at) for way, at in self._aperture(direction, turn)])
-            for turn in range(_ROUNDS)
-        ]
-        return float(np.mean(rounds)), float(np.std(rounds, ddof=1) / np.sqrt(_ROUNDS))
+    def intensity(self, direction: Array, turn: int) -> float:
+        """Return the intensity towards a receiver, as round ``turn`` sees it."""
+        return float(np.mean([self._look(way, at) for way, at in self._aperture(direction, turn)]))
 
     def _aperture(self, direction: Array, turn: int) -> list[tuple[Array, int]]:
         """Return directions spread over the receiver, and a seed for each."""
@@ -192,6 +230,8 @@ class _Eye:
             layers=True,
             threads=self._threads or 0,
         )
+        if outcome.interrupted:
+            raise KeyboardInterrupt
         return np.einsum("g,grc->rc", self._weights, outcome.layers()[..., 1])
 
 

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from lamplit.photometry.chance import variance_of_mean
+
 if TYPE_CHECKING:
     import xarray
 
@@ -78,6 +80,11 @@ def _spots(measurement: Measurement) -> dict[str, Any]:
             ("group", "spot", "wavelength"),
             measurement.spot_spectra,
             _about("W sr-1 nm-1", "spectral radiant intensity"),
+        ),
+        "spot_spectrum_standard_error": (
+            ("group", "spot", "wavelength"),
+            np.sqrt(variance_of_mean(measurement.spot_spectra_by_batch)),
+            _about("W sr-1 nm-1", "standard error (1 sigma) of spot_spectrum, by its batches"),
         ),
     }
 

@@ -57,10 +57,10 @@ class Measurement:
     grid_xyz: Array
     #: (b, g, rows, columns, 3), illuminance on the plane; Y in lx. None without one.
     plane_xyz: Array | None
-    #: (g, p, n), spectral radiant intensity at the spots in W/(sr nm).
-    spot_spectra: Array
-    #: (g, n), spectral flux that leaves the lamp, in W/nm.
-    out_spectra: Array
+    #: (b, g, p, n), spectral radiant intensity at the spots in W/(sr nm).
+    spot_spectra_by_batch: Array
+    #: (b, g, n), spectral flux that leaves the lamp, in W/nm.
+    out_spectra_by_batch: Array
     #: (g, v, h, n), spectral radiant intensity in the cells, in W/(sr nm). None unless asked for.
     grid_spectra: Array | None
     #: (n,), the middles of the bands of spots, and of cells.
@@ -167,6 +167,16 @@ class Measurement:
         return np.stack([self.emitted_xyz[:, 1] / max(self.paths, 1), seen], axis=-1)
 
     @property
+    def spot_spectra(self) -> Array:
+        """The spectral radiant intensity at the spots, (g, p, n), in W/(sr nm)."""
+        return np.asarray(self.spot_spectra_by_batch.mean(axis=0), np.float64)
+
+    @property
+    def out_spectra(self) -> Array:
+        """The spectral flux that leaves the lamp, (g, n), in W/nm."""
+        return np.asarray(self.out_spectra_by_batch.mean(axis=0), np.float64)
+
+    @property
     def emitted_lm(self) -> dict[str, float]:
         """The luminous flux that each light group sends out."""
         return dict(zip(self.groups, self.emitted_xyz[:, 1].tolist(), strict=True))
@@ -222,9 +232,9 @@ class Measurement:
 
         Variables: ``intensity`` and its ``intensity_standard_error`` in cd over (group, V, H),
         ``intensity_xyz`` over (group, V, H, component), ``spot_xyz`` and its standard error over
-        (group, spot, component), ``spot_spectrum`` over (group, spot, wavelength), and, with
-        ``spectra``, ``spectrum`` over (group, V, H, wavelength). H and V are middles of cells in
-        degrees.
+        (group, spot, component), ``spot_spectrum`` and its standard error over (group, spot,
+        wavelength), and, with ``spectra``, ``spectrum`` over (group, V, H, wavelength). H and V are
+        middles of cells in degrees.
         """
         from lamplit.engine.labelled_light import labelled
 

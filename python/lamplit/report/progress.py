@@ -9,6 +9,8 @@ from collections.abc import Iterator
 from types import TracebackType
 from typing import TYPE_CHECKING, TextIO
 
+from lamplit.printable import printable
+
 if TYPE_CHECKING:
     from rich.progress import Progress as Bar
     from rich.progress import TaskID
@@ -38,7 +40,7 @@ class Progress:
         time_s: float | None = None,
         first_round: int = 0,
     ) -> None:
-        self.title = title
+        self.title = printable(title)
         self.stream = sys.stderr if stream is None else stream
         self._pixels = pixels
         self._time_s = time_s

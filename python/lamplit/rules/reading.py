@@ -18,7 +18,7 @@ Mask = NDArray[np.bool_]
 
 #: Two directions closer than this are the same.
 _SAME_DEG = 0.01
-_DARK = "no light arrives here; σ is an upper bound"
+_DARK = "no light arrives here, below any minimum; σ is an upper bound"
 
 
 class Reading(NamedTuple):

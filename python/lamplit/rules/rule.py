@@ -111,7 +111,7 @@ class Rule:
     def where_known(self, **options: object) -> Rule:
         """Return this rule under those of ``options`` that its set has and that are not None.
 
-        For what a scene says of a function whatever its rule: ``sections``, ``lamps``, ``side``.
+        For what a scene says of a function whatever its rule: ``sections``, ``assembly``, ``side``.
 
         Raises:
             RuleError: The set has such an option, and no such choice.

@@ -42,8 +42,9 @@ class LampFunction(Table):
     sections: Annotated[int, Field(ge=1, le=3)] = Field(
         default=1, description="lighted sections that the function has"
     )
-    lamps: Annotated[int, Field(ge=1, le=2)] = Field(
-        default=1, description="lamps that give the function together on one side"
+    assembly: Literal["single", "D"] = Field(
+        default="single",
+        description='"D": two independent lamps that give the function together (UN R148)',
     )
     side: Literal["left", "right"] | None = Field(
         default=None, description="side of the car, for fields that differ inward and outward"

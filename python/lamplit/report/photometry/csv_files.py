@@ -12,10 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from lamplit.colour.hue import hue
 from lamplit.errors import LamplitError
 from lamplit.report.photometry.isocandela import middles
 
 if TYPE_CHECKING:
+    from lamplit.engine.cross_check import CrossCheck
     from lamplit.report.photometry.results import FunctionResults, Results
 
 Array = NDArray[np.float64]
@@ -27,10 +29,17 @@ POINTS_HEADER = (
 SPOTS_HEADER = (
     "function", "H_deg", "V_deg", "intensity_cd", "standard_error_cd", "X_cd", "Z_cd",
     "x", "y", "standard_error_x", "standard_error_y", "correlation_xy",
+    "dominant_wavelength_nm", "standard_error_dominant_wavelength_nm", "CCT_K",
+    "standard_error_CCT_K",
 )  # fmt: skip
 REFLEX_HEADER = (
     "reflector", "entrance_V_deg", "entrance_H_deg", "observation_deg", "CIL_mcd_per_lx",
     "standard_error_mcd_per_lx",
+)  # fmt: skip
+CROSS_CHECK_FILE = "cross-check.csv"
+CROSS_CHECK_HEADER = (
+    "H_deg", "V_deg", "from_light_cd", "standard_error_from_light_cd", "from_receiver_cd",
+    "standard_error_from_receiver_cd", "apart_sigmas",
 )  # fmt: skip
 CANDELA_HEADER = (
     "function", "H_deg", "V_deg", "intensity_cd", "standard_error_cd", "X_cd", "Z_cd",
@@ -61,6 +70,15 @@ def reflex_csv(results: Results) -> bytes:
     """Return a line for each pair of angles at which a retro-reflector was measured."""
     rows = [(one.name, *vars(own).values()) for one in results.reflectors for own in one.readings]
     return _written(REFLEX_HEADER, rows)
+
+
+def cross_check_csv(both: CrossCheck) -> bytes:
+    """Return a line for each direction that was measured by both ways."""
+    columns = (
+        both.spot_h_deg, both.spot_v_deg, both.light_cd, both.light_standard_error_cd,
+        both.eye_cd, both.eye_standard_error_cd, both.sigmas,
+    )  # fmt: skip
+    return _written(CROSS_CHECK_HEADER, zip(*columns, strict=True))
 
 
 def candela_csv(results: Results) -> bytes:
@@ -110,7 +128,7 @@ def _spots(one: FunctionResults) -> Iterable[Sequence[object]]:
         yield (
             one.name, seen.spot_h_deg[at], seen.spot_v_deg[at], seen.spot_cd[at],
             seen.spot_standard_error_cd[at], seen.spot_xyz[at, 0], seen.spot_xyz[at, 2],
-            *xy[at], *errors[at], correlation[at],
+            *xy[at], *errors[at], correlation[at], *hue(xy[at], colours.covariance[at]),
         )  # fmt: skip
 
 

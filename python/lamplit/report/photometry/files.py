@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,10 +22,14 @@ if TYPE_CHECKING:
 POINTS_FILE, SPOTS_FILE, REFLEX_FILE = "points.csv", "spots.csv", "reflex.csv"
 
 
-def write_measurement(results: Results, directory: Path) -> dict[str, str]:
+def write_measurement(
+    results: Results, directory: Path, progress: Callable[[int, int], object] | None = None
+) -> dict[str, str]:
     """Write the tables, plots and numbers of ``results``; return the files and what is in each.
 
-    ``measurement.json`` is written last, so that a folder which has one is complete.
+    ``measurement.json`` is taken away first and written last, so that a folder which has one is
+    complete. Plots take longest: they are drawn before anything is touched, and ``progress`` is
+    told of them (`draw_plots`).
 
     Raises:
         OutputError: The folder or a file in it cannot be written.
@@ -32,6 +37,8 @@ def write_measurement(results: Results, directory: Path) -> dict[str, str]:
     """
     files = (POINTS_FILE, SPOTS_FILE, CANDELA_FILE, REFLEX_FILE, MEASUREMENT_FILE)
     prepare_output(directory, files)
+    plots = draw_plots(results, progress)
+    (directory / MEASUREMENT_FILE).unlink(missing_ok=True)
     written: dict[str, str] = {}
     if results.outcome is not None:
         write_bytes(directory / POINTS_FILE, points_csv(results))
@@ -46,7 +53,7 @@ def write_measurement(results: Results, directory: Path) -> dict[str, str]:
         written[REFLEX_FILE] = "what reflectors send back, by entrance and observation angle"
     for one, stem in zip(results.functions, stems(results), strict=True):
         written |= _write_photometric_files(results, one, directory, stem)
-    for plot in draw_plots(results):
+    for plot in plots:
         write_bytes(directory / plot.file, plot.content)
         written[plot.file] = KINDS[plot.kind]
     write_bytes(directory / MEASUREMENT_FILE, measurement_json(results))

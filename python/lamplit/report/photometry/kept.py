@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, ValidationError
 
+from lamplit.colour.hue import hue
 from lamplit.errors import LamplitError
 from lamplit.photometry.observed import Observed
 from lamplit.report.photometry import results as shown
@@ -42,7 +43,9 @@ Four = tuple[float, float, float, float]
 class KeptSpot(Kept):
     """A measured direction.
 
-    The chromaticity is null where no light came, its standard error where too little did.
+    The chromaticity is null where no light came, its standard error where too little did. So are
+    the dominant wavelength, which is the complementary one with a minus sign of a purple, and the
+    CCT, which few colours have.
     """
 
     h_deg: float
@@ -53,6 +56,10 @@ class KeptSpot(Kept):
     xyz_covariance_cd2: tuple[Triple, Triple, Triple]
     chromaticity_xy: Pair | None
     chromaticity_standard_error: Pair | None
+    dominant_wavelength_nm: float | None = None
+    dominant_wavelength_standard_error_nm: float | None = None
+    colour_temperature_k: float | None = None
+    colour_temperature_standard_error_k: float | None = None
 
 
 class KeptGrid(Kept):
@@ -80,6 +87,7 @@ class KeptSpectrum(Kept):
     band_nm: float | None
     wavelengths_nm: list[float]
     values: list[float]
+    standard_errors: list[float] | None = None
 
 
 class KeptFunction(Kept):
@@ -238,21 +246,29 @@ def _kept_spots(seen: Observed) -> list[KeptSpot]:
             xyz_covariance_cd2=seen.spot_xyz_covariance[at].tolist(),
             chromaticity_xy=xy[at].tolist() if lit[at] else None,
             chromaticity_standard_error=errors[at].tolist() if colours.is_known[at] else None,
+            **_known_hue(xy[at], colours.covariance[at]),
         )
         for at in range(len(seen.spot_h_deg))
     ]  # fmt: skip
+
+
+def _known_hue(xy: Array, covariance: Array) -> dict[str, float]:
+    found = hue(xy, covariance)._asdict()
+    return {name: value for name, value in found.items() if np.isfinite(value)}
 
 
 def _kept_spectrum(one: shown.Spectrum) -> KeptSpectrum:
     return KeptSpectrum(
         name=one.name, unit=one.unit, band_nm=one.band_nm,
         wavelengths_nm=one.wavelengths_nm.tolist(), values=one.values.tolist(),
+        standard_errors=None if one.standard_error is None else one.standard_error.tolist(),
     )  # fmt: skip
 
 
 def _spectrum(one: KeptSpectrum) -> shown.Spectrum:
     wavelengths, values = np.array(one.wavelengths_nm), np.array(one.values)
-    return shown.Spectrum(one.name, wavelengths, values, one.unit, one.band_nm)
+    error = None if one.standard_errors is None else np.array(one.standard_errors)
+    return shown.Spectrum(one.name, wavelengths, values, one.unit, one.band_nm, error)
 
 
 def _function(one: KeptFunction, grid_xyz: Array, grid_error: Array) -> shown.FunctionResults:

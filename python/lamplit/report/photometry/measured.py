@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 from lamplit.photometry.chance import variance_of_mean
 from lamplit.report.photometry.judged import judged
 from lamplit.report.photometry.results import EnergyFlow, FunctionResults, Results, Spectrum
+from lamplit.scene.rays import ray_notices
 
 Array = NDArray[np.float64]
 
@@ -19,6 +21,8 @@ Array = NDArray[np.float64]
 #: filled evenly by every path; its parts take turns.
 _BANDS_TOGETHER = (1, 5, 10, 20)
 _HITS_IN_BAND = 30.0
+#: A standard error below this share of the peak can be looked at.
+_CERTAIN = 0.2
 
 if TYPE_CHECKING:
     from lamplit.engine.measurement import Measurement
@@ -69,6 +73,7 @@ def results_of(
         energy=energy_of(measurement),
         spectra=_spectra(measurement),
         geometry=_geometry(measurement),
+        notices=ray_file_notices(measurement),
         elapsed_s=measurement.elapsed_s,
         complete=measurement.complete,
     )
@@ -144,11 +149,11 @@ def _on_axis(measurement: Measurement, one: Asked) -> Spectrum | None:
     if at.size == 0 or measurement.band_centres_nm.size == 0:
         return None
     weights = measurement.weights(one.light or None)
-    values = weights @ measurement.spot_spectra[:, int(at[0])]
+    batches = np.einsum("g,bgn->bn", weights, measurement.spot_spectra_by_batch[:, :, int(at[0])])
     seen = _observed(measurement, one.name, one.light)
     cd, error = float(seen.spot_cd[at[0]]), float(seen.spot_standard_error_cd[at[0]])
-    fine = Spectrum(f"{one.name} at HV", measurement.band_centres_nm, values, "W/(sr nm)")
-    return in_bands(fine, _hits(cd, error))
+    about = Spectrum(f"{one.name} at HV", measurement.band_centres_nm, np.empty(0), "W/(sr nm)")
+    return in_bands(about, batches, _hits(cd, error))
 
 
 def _hits(flux: float, standard_error: float) -> float:
@@ -171,12 +176,11 @@ def _spectra(measurement: Measurement) -> tuple[Spectrum, ...]:
     ]
     lumens = measurement.out_xyz.mean(axis=0)[:, 1]
     errors = np.sqrt(variance_of_mean(measurement.out_xyz[..., 1]))
-    lumens = measurement.out_xyz.mean(axis=0)[:, 1]
-    errors = np.sqrt(variance_of_mean(measurement.out_xyz[..., 1]))
     nm = measurement.band_centres_nm
     leaving = [
         in_bands(
-            Spectrum(f"{name}, leaving the lamp", nm, measurement.out_spectra[at], "W/nm"),
+            Spectrum(f"{name}, leaving the lamp", nm, np.empty(0), "W/nm"),
+            measurement.out_spectra_by_batch[:, at],
             _hits(float(lumens[at]), float(errors[at])),
         )
         for at, name in enumerate(measurement.groups)
@@ -184,24 +188,50 @@ def _spectra(measurement: Measurement) -> tuple[Spectrum, ...]:
     return (*shapes, *(one for one in leaving if one is not None))
 
 
-def in_bands(fine: Spectrum, hits: float) -> Spectrum | None:
-    """Return a measured spectrum in bands so wide that none is a matter of a few hits.
+def in_bands(about: Spectrum, batches: Array, hits: float) -> Spectrum | None:
+    """Return a measured spectrum, with standard errors, in bands wide enough to mean something.
 
-    ``fine`` has bands evenly apart, and ``hits`` paths made it. Where dispersion parts the
-    wavelengths, a hit tells of one alone: a band has at least thirty of them, were all bands alike.
-    None of darkness, and where not even the widest bands have as many: too few paths.
+    ``batches`` (b, n) are values in n bands evenly apart, of independent walks, and ``hits`` paths
+    made them; ``about`` says the rest. Where dispersion parts the wavelengths, a hit tells of one
+    alone: a band has at least thirty of them, were all bands alike. They are also wide enough for σ
+    to be below a fifth of the peak, if that can be had. None of darkness, and where not even the
+    widest bands have hits enough: too few paths.
     """
-    middles_nm, values = fine.wavelengths_nm, fine.values
-    if len(values) < 2 or not values.any():
+    middles_nm, wide = about.wavelengths_nm, None
+    if len(middles_nm) < 2 or not batches.any():
         return None
     step = float(middles_nm[1] - middles_nm[0])
     for several in _BANDS_TOGETHER:
-        count, rest = divmod(len(values), several)
+        count, rest = divmod(len(middles_nm), several)
         if rest == 0 and hits >= _HITS_IN_BAND * count:
-            middles = middles_nm.reshape(count, several).mean(axis=1)
-            means = values.reshape(count, several).mean(axis=1)
-            return Spectrum(fine.name, middles, means, fine.unit, step * several)
-    return None
+            means = batches.reshape(len(batches), count, several).mean(axis=2)
+            wide = replace(
+                about,
+                wavelengths_nm=middles_nm.reshape(count, several).mean(axis=1),
+                values=means.mean(axis=0),
+                band_nm=step * several,
+                standard_error=np.sqrt(variance_of_mean(means)),
+            )
+            error = wide.standard_error
+            if error is None or error.max() <= _CERTAIN * wide.values.max():
+                break
+    return wide
+
+
+def ray_file_notices(measurement: Measurement) -> tuple[str, ...]:
+    """Return what to know of the scene's ray files: what they lack, and where they are coarse."""
+    if measurement.light is not None or not measurement.scene.ray_files:
+        return ()
+    counts: dict[str, int] = {}
+    for rays in measurement.scene.resolved_rays():
+        counts[rays.name] = counts.get(rays.name, 0) + len(rays.flux)
+    coarse = [
+        f"{name}: its file has {count} rays, fewer than the paths that were walked: σ is that of "
+        "walks from these rays, and says nothing of how coarsely they stand for the source"
+        for name, count in counts.items()
+        if count < measurement.paths
+    ]
+    return (*ray_notices(measurement.scene), *coarse)
 
 
 def _geometry(measurement: Measurement) -> dict[str, str]:

@@ -5,13 +5,15 @@ from __future__ import annotations
 
 import base64
 import io
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from lamplit.colour.hue import hue
 from lamplit.errors import LamplitError
+from lamplit.printable import printable
 from lamplit.report.photometry import reflected, table
 from lamplit.report.photometry.plots import Plot, draw_plots
 from lamplit.report.photometry.results import tally
@@ -71,19 +73,27 @@ def read_picture(path: Path, caption: str | None = None) -> Picture:
     return Picture(path.stem if caption is None else caption, held.getvalue())
 
 
-def render_page(results: Results, pictures: Iterable[Picture] = ()) -> str:
+def render_page(
+    results: Results,
+    pictures: Iterable[Picture] = (),
+    progress: Callable[[int, int], object] | None = None,
+) -> str:
     """Return the report on ``results`` as HTML: verdict first, then what it stands on.
 
     All text is escaped, pictures are data in the file, and a policy in its head forbids it to load
-    anything else.
+    anything else. ``progress`` is told of the plots (`draw_plots`).
     """
     from jinja2 import Environment, StrictUndefined
 
     environment = Environment(
-        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        finalize=_shown,
     )
     template = environment.from_string(Path(__file__).with_name("page.html").read_text("utf-8"))
-    plots = draw_plots(results)
+    plots = draw_plots(results, progress)
     return template.render(
         results=results,
         overall=None if results.outcome is None else MARKS[results.outcome],
@@ -96,6 +106,10 @@ def render_page(results: Results, pictures: Iterable[Picture] = ()) -> str:
         trust=_trust(results),
         paths=f"{results.paths:,}".replace(",", " "),
     )
+
+
+def _shown(value: Any) -> Any:
+    return printable(value) if isinstance(value, str) else value
 
 
 def _source(content: bytes) -> str:
@@ -166,7 +180,7 @@ def _row(finding: Finding, count: int) -> dict[str, Any]:
 
 
 def _on_axis(one: FunctionResults) -> dict[str, str]:
-    """Return intensity and chromaticity at HV, if that was measured."""
+    """Return intensity and colour at HV, if that was measured."""
     seen = one.observed
     at = np.flatnonzero((seen.spot_h_deg == 0.0) & (seen.spot_v_deg == 0.0))
     if at.size == 0:
@@ -182,6 +196,12 @@ def _on_axis(one: FunctionResults) -> dict[str, str]:
             f"{value:.4f} ± {2.0 * error:.1g}"
             for value, error in zip(colours.xy[place], colours.standard_error[place], strict=True)
         )
+        dominant, nm, kelvin, error = hue(colours.xy[place], colours.covariance[place])
+        if np.isfinite(nm):
+            name = "dominant wavelength" if dominant > 0.0 else "complementary wavelength"
+            facts[name] = f"{abs(dominant):.1f} ± {2.0 * nm:.1g} nm"
+        if np.isfinite(error):
+            facts["CCT"] = f"{kelvin:.0f} ± {2.0 * error:.2g} K"
     return facts
 
 

@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from lamplit.report.photometry.chart import draw_chart
@@ -44,19 +45,28 @@ KINDS = {
 }
 
 
-def draw_plots(results: Results) -> list[Plot]:
-    """Return every plot that ``results`` have something for."""
+def draw_plots(
+    results: Results, progress: Callable[[int, int], object] | None = None
+) -> list[Plot]:
+    """Return every plot that ``results`` have something for.
+
+    ``progress`` is called with the number of plots that are done, and of all that there may be.
+    """
     found: list[Plot] = []
-    for one, stem in zip(results.functions, stems(results), strict=True):
-        for kind, figure in _function_figures(one):
-            if figure is not None:
-                found.append(Plot(kind, one.name, f"{stem}-{kind}.png", png(figure)))
-    lamp = {"spectra": _spectra(results), "energy": _energy(results)}
-    found += [
-        Plot(kind, None, f"{kind}.png", png(figure))
-        for kind, figure in lamp.items()
-        if figure is not None
+    drawn = [
+        *(
+            (kind, one, f"{stem}-{kind}.png", partial(draw, one))
+            for one, stem in zip(results.functions, stems(results), strict=True)
+            for kind, draw in _OF_FUNCTION.items()
+        ),
+        *((kind, None, f"{kind}.png", partial(draw, results)) for kind, draw in _OF_LAMP.items()),
     ]
+    for done, (kind, one, file, draw) in enumerate(drawn, 1):
+        figure = draw()
+        if figure is not None:
+            found.append(Plot(kind, None if one is None else one.name, file, png(figure)))
+        if progress is not None:
+            progress(done, len(drawn))
     return found
 
 
@@ -75,12 +85,8 @@ def stems(results: Results) -> list[str]:
     return found
 
 
-def _function_figures(one: FunctionResults) -> Iterator[tuple[str, Figure | None]]:
-    yield "points", None if one.verdict is None else draw_chart(one, one.verdict)
-    yield "isocandela", draw_isocandela(one)
-    yield "cuts", draw_cuts(one)
-    yield "colour", draw_chromaticity(one)
-    yield "solid", draw_solid(one)
+def _points(one: FunctionResults) -> Figure | None:
+    return None if one.verdict is None else draw_chart(one, one.verdict)
 
 
 def _spectra(results: Results) -> Figure | None:
@@ -90,3 +96,14 @@ def _spectra(results: Results) -> Figure | None:
 
 def _energy(results: Results) -> Figure | None:
     return None if results.energy is None else draw_energy(results.energy)
+
+
+#: What is drawn of each function, and of the lamp as a whole, by kind.
+_OF_FUNCTION: dict[str, Callable[[FunctionResults], Figure | None]] = {
+    "points": _points,
+    "isocandela": draw_isocandela,
+    "cuts": draw_cuts,
+    "colour": draw_chromaticity,
+    "solid": draw_solid,
+}
+_OF_LAMP: dict[str, Callable[[Results], Figure | None]] = {"spectra": _spectra, "energy": _energy}

@@ -41,6 +41,8 @@ class Spectrum:
     unit: str
     #: Width of the bands that ``values`` are means over; None of a spectrum that is known smoothly.
     band_nm: float | None = None
+    #: (n,), of ``values``; None of a spectrum that nobody measured.
+    standard_error: Array | None = None
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ import io
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
+from lamplit.printable import printable
 from lamplit.report.sheet import FONT
 
 if TYPE_CHECKING:
@@ -78,7 +79,7 @@ def write(
 ) -> None:
     """Write one line at a place of the figure, 0 to 1, or of the axes, in their data."""
     figure.text(
-        x, y, " ".join(text.split()), color=ink, fontsize=size, family=FONT, ha=align,
+        x, y, printable(" ".join(text.split())), color=ink, fontsize=size, family=FONT, ha=align,
         va="center" if middle else "baseline", fontweight="bold" if bold else "normal",
         parse_math=False,
     )  # fmt: skip
@@ -97,7 +98,7 @@ def shortened(text: str, most: int) -> str:
     >>> shortened("a rear lamp", 8)
     'a rear…'
     """
-    line = " ".join(text.split())
+    line = printable(" ".join(text.split()))
     return line if len(line) <= most else line[: most - 1].rstrip() + "…"
 
 

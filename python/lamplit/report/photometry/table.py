@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lamplit.printable import printable
 from lamplit.report.photometry.results import worst_finding
 from lamplit.report.photometry.style import MARKS, cd, spread
 
@@ -217,7 +218,7 @@ def findings_table(function: FunctionResults, *, width: int = 120) -> Table:
             Text(required(finding)),
             margin(finding),
             Text(f"{mark.sign} {mark.word}", style=STYLES[finding.outcome]),
-            Text("; ".join(filter(None, notes))),
+            Text(printable("; ".join(filter(None, notes)))),
         )
     return table
 
