@@ -102,7 +102,8 @@ def _check(
     for what, is_asked in of_path.items():
         if is_asked and method == "hall":
             raise LamplitError(
-                f"{what} needs the method path or lit, and this is hall; leave it out, or choose another"
+                f"{what} needs the method path or lit, and this is hall; leave it out, "
+                "or choose another"
             )
     if error is not None and not 0.0 < error <= 1.0:
         raise LamplitError(

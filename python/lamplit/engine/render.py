@@ -56,7 +56,8 @@ def render(
 
     ``method`` is ``path``, physical transport; ``lit``, the same for small lights behind optics,
     which it learns to find; ``hall``, the founding method; or ``auto``: ``lit`` where an object
-    shines, else ``path``. None takes the scene's. ``colour`` is ``rgb`` for the RGB half of a comparison.
+    shines, else ``path``. None takes the scene's. ``colour`` is ``rgb`` for the RGB half of a
+    comparison.
 
     ``samples`` per pixel stand in for the scene's own. ``error`` is the `Image.relative_error` to
     sample down to, and ``time_s`` the seconds to trace for; with either, ``samples`` is the most

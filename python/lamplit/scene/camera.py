@@ -104,7 +104,7 @@ class ImageSettings(Table):
     )
     error: Annotated[Positive, Field(le=1.0)] | None = Field(
         default=None,
-        description="path, lit: standard error of a pixel's luminance, as a share, to sample down to",
+        description="path, lit: a pixel's standard error of luminance, as a share, to sample for",
     )
     sampling: Literal["grid", "sobol"] = Field(
         default="grid",
