@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::settings::{Method, RenderSettings};
-use super::MeasureError;
+use super::{MeasureError, Progress};
 use crate::scene::Scene;
 use crate::transport::{Guide, PathSettings, Shining};
 
@@ -21,18 +21,23 @@ pub fn learn(
 ) -> Result<Guide, MeasureError> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
     let source = Shining::of(scene).into();
-    Ok(pool.install(|| Guide::learn(scene, &source, settings, seed))?)
+    Ok(pool.install(|| Guide::learn(scene, &source, settings, seed, &|| false))?)
 }
 
 /// What a rendering knows of where light comes from: what it was given, else what it learns; nothing
 /// for methods that do not ask, and where nothing shines.
-pub(super) fn guide(scene: &Scene, settings: &RenderSettings) -> Option<Arc<Guide>> {
+pub(super) fn guide(
+    scene: &Scene,
+    settings: &RenderSettings,
+    progress: &Progress,
+) -> Option<Arc<Guide>> {
     let Method::Lit(path) = settings.method else {
         return None;
     };
     let learn = || {
         let source = Shining::of(scene).into();
-        Guide::learn(scene, &source, path, settings.seed).ok().map(Arc::new)
+        let is_cancelled = || progress.is_cancelled();
+        Guide::learn(scene, &source, path, settings.seed, &is_cancelled).ok().map(Arc::new)
     };
     settings.guide.clone().or_else(learn)
 }

@@ -67,7 +67,7 @@ impl<'a> LightFilm<'a> {
         settings: &'a RenderSettings,
     ) -> Result<Self, FluxError> {
         let screen = Screen { width: settings.width, height: settings.height };
-        let walk = LightWalk::new(scene, source, path)?.shown_on(screen);
+        let walk = LightWalk::new(scene, source, path.from_lights())?.shown_on(screen);
         let pixels = settings.width as usize * settings.height as usize;
         let batch = Batch { paths: 0, segments: 0, sums: vec![[0.0; 3]; pixels * scene.groups] };
         Ok(Self { scene, walk, settings, batches: vec![batch; BATCHES], first: 0 })

@@ -107,7 +107,7 @@ pub fn render(
     let pool = threads.stack_size(STACK).build()?;
     pool.install(|| {
         let began = Instant::now();
-        let guide = learning::guide(scene, settings);
+        let guide = learning::guide(scene, settings, progress);
         let (guide, source) = (guide.as_deref(), LightSource::from(Shining::of(scene)));
         let shown = light_film(scene, &source, settings);
         let leaves_rough = shown.is_some();
@@ -178,9 +178,10 @@ impl Rendering<'_> {
             self.expose(&mut exposures, &mut tally, samples, self.settings.time_budget);
             return Rendered::of(exposures, None, tally);
         }
-        let rest = samples.start + pilot_samples;
         let eyes = Instant::now();
-        self.expose(&mut exposures, &mut tally, samples.start..rest, None);
+        let first = samples.start..samples.start + pilot_samples;
+        let rest = self.expose_first(&mut exposures, &mut tally, first);
+        let pilot_samples = rest - samples.start;
         let mut shown = shown;
         if !self.progress.is_cancelled() {
             let affordable = self.affordable(pilot_samples, eyes.elapsed());
@@ -205,6 +206,22 @@ impl Rendering<'_> {
         } else {
             wanted.clamp(Pilot::FEWEST, Pilot::MOST).min(samples)
         }
+    }
+
+    /// The first round, as far as a quarter of the time allows; the number of the sample after it.
+    fn expose_first(
+        &self,
+        exposures: &mut [Exposure],
+        tally: &mut Tally,
+        samples: Range<u32>,
+    ) -> u32 {
+        // No spread is known of fewer than two.
+        let second = samples.end.min(samples.start + 2);
+        self.expose(exposures, tally, samples.start..second, None);
+        let quarter = self.settings.time_budget.map(|budget| {
+            (budget / 4).saturating_sub(self.began.elapsed()).max(Duration::from_nanos(1))
+        });
+        self.expose(exposures, tally, second..samples.end, quarter).max(second)
     }
 
     /// How many samples of every pixel can be had, if those of the first round took so long.
@@ -253,7 +270,7 @@ impl Rendering<'_> {
         tally: &mut Tally,
         samples: Range<u32>,
         time_budget: Option<Duration>,
-    ) {
+    ) -> u32 {
         let started = Instant::now();
         let most = |exposure: &Exposure| {
             let limit = exposure.limit.as_ref();
@@ -300,6 +317,7 @@ impl Rendering<'_> {
                 length = length.min(affordable.div_ceil(2));
             }
         }
+        next.min(end)
     }
 }
 

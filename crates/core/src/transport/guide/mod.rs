@@ -36,9 +36,9 @@ use tree::Tree;
 const TO_LEARN: u64 = 0x2545_F491_4F6C_DD1D;
 /// Walks that learn are independent of threads in so many batches.
 const BATCHES: u64 = 32;
-/// How many arrivals are enough, and after how many paths of a batch there is an end of it.
+/// How many arrivals are enough, and after how many segments there is an end of it.
 const ENOUGH: usize = 1 << 18;
-const MOST_PATHS: u32 = 1 << 15;
+const MOST_SEGMENTS: u64 = 1 << 22;
 /// The most arrivals of a region, and the fewest that one can learn from.
 const MOST: usize = 400;
 const FEWEST: usize = 16;
@@ -136,7 +136,8 @@ impl Answered<'_> {
 }
 
 impl Guide {
-    /// Learn from walks of `source`. What is learned depends on the scene and the seed alone.
+    /// Learn from walks of `source`. What is learned depends on the scene, the settings and the seed
+    /// alone, unless it `is_cancelled`.
     ///
     /// # Errors
     /// There is no visible flux.
@@ -145,29 +146,35 @@ impl Guide {
         source: &LightSource,
         settings: PathSettings,
         seed: u64,
+        is_cancelled: &(dyn Fn() -> bool + Sync),
     ) -> Result<Self, FluxError> {
-        let walk = LightWalk::new(scene, source, settings)?;
+        let walk = LightWalk::new(scene, source, settings.from_lights())?;
         let groups = source.groups(scene);
-        let mut batches = vec![Vec::new(); BATCHES as usize];
+        let mut batches = vec![(Vec::new(), Tally::new(scene.bodies.len())); BATCHES as usize];
         let (mut done, mut paths) = (0, 64);
-        while done < MOST_PATHS && batches.iter().map(Vec::len).sum::<usize>() < ENOUGH {
-            batches.par_iter_mut().enumerate().for_each(|(number, arrivals)| {
-                let mut tally = Tally::new(scene.bodies.len());
+        while !is_cancelled() {
+            batches.par_iter_mut().enumerate().for_each(|(number, (arrivals, tally))| {
                 let mut ledgers = vec![Ledger::new(scene.bodies.len()); groups];
                 for path in done..done + paths {
                     let sampler =
                         PixelSequence::Sobol.sampler(seed ^ TO_LEARN, number as u64, path);
-                    walk.walk(sampler, &mut tally, &mut ledgers, &mut |carried| {
+                    walk.walk(sampler, tally, &mut ledgers, &mut |carried| {
                         if let Carried::Arrived(arrival) = carried.what {
                             arrivals.push(arrival);
                         }
                     });
                 }
             });
+            let arrivals = batches.iter().map(|(arrivals, _)| arrivals.len()).sum::<usize>();
+            let segments = batches.iter().map(|(_, tally)| tally.segments()).sum::<u64>();
+            if arrivals >= ENOUGH || segments >= MOST_SEGMENTS {
+                break;
+            }
             done += paths;
             paths = done;
         }
-        Ok(Self::from_arrivals(batches.concat()))
+        let arrivals = batches.into_iter().flat_map(|(arrivals, _)| arrivals).collect();
+        Ok(Self::from_arrivals(arrivals))
     }
 
     fn from_arrivals(mut arrivals: Vec<Arrival>) -> Self {

@@ -52,6 +52,15 @@ pub struct PathSettings {
     pub roulette_below: f64,
 }
 
+impl PathSettings {
+    /// How walks from lights are spent that serve a picture from the eye: docs/transport.md has what was
+    /// measured.
+    #[must_use]
+    pub fn from_lights(self) -> Self {
+        Self { split_depth: 1, roulette_below: 0.25, ..self }
+    }
+}
+
 /// One sample's tree of rays.
 pub struct PathWalk<'a> {
     scene: &'a Scene,
