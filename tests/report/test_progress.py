@@ -8,6 +8,7 @@ from io import StringIO
 import pytest
 
 from lamplit.report.progress import Progress
+from lamplit.report.view_progress import ViewsProgress
 
 
 class Terminal(StringIO):
@@ -103,3 +104,17 @@ def test_a_terminal_shows_the_details_beside_the_bar() -> None:
         progress(10, 10_000)
         progress(100, 100)
     assert "10 of 10 samples per pixel" in " ".join(terminal.getvalue().split())
+
+
+def test_progress_over_frames_tells_which_and_when_all_are_done(clock: list[float]) -> None:
+    log = StringIO()
+    with ViewsProgress("Rendering", log, count=4, pixels=1000) as progress:
+        clock[0] = 10.0
+        progress.frame(1, 8_000, 16_000)
+        clock[0] = 20.0
+        progress.frame(3, 0, 16_000)
+    first, second = log.getvalue().splitlines()
+    assert first.startswith("Rendering: 37 % after 10.0 s, frame 2 of 4, 8 of 16 samples per pixel")
+    assert first.endswith("about 16.7 s left")
+    assert second.startswith("Rendering: 75 % after 20.0 s, frame 4 of 4, 0 of 16 samples")
+    assert second.endswith("about 6.7 s left")

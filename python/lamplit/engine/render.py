@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -80,6 +81,41 @@ def render(
         adaptive=adaptive,
         layers=layers,
     )
+    start = time.perf_counter()
+    stage = set_stage(settled, colour)
+    keeps_bands = spectral_bands and colour == "spectral"
+    return expose(
+        stage,
+        started=start,
+        bands=_bands_per_lane(settled, stage.phases) if keeps_bands else 0,
+        layers=layers,
+        features=features,
+        threads=threads,
+        progress=progress,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Stage:
+    """A scene that is assembled and ready to be seen by its camera."""
+
+    settled: Plan
+    colour: Literal["spectral", "rgb"]
+    world: _core.Scene
+    #: How many wavelengths each lane takes in turn.
+    phases: int
+    #: Of the files as they were read, whatever becomes of them.
+    scene_hash: str
+    build_s: float
+    notices: tuple[str, ...]
+
+
+def set_stage(settled: Plan, colour: Literal["spectral", "rgb"] = "spectral") -> Stage:
+    """Assemble the scene of ``settled``.
+
+    Raises:
+        LamplitError: Something in the scene cannot be used.
+    """
     scene = settled.scene
     notices = light_notices(scene)
     if settled.method == "path":
@@ -88,15 +124,33 @@ def render(
     carrier: Carrier = spectral
     if colour == "rgb":
         carrier = RgbCarrier(spectral, scene.resolve_source(scene.display.white))
-    keeps_bands = spectral_bands and colour == "spectral"
-    bands = _bands_per_lane(settled, spectral.phases) if keeps_bands else 0
     start = time.perf_counter()
     world = assemble(scene, carrier)
-    scene_hash = scene.scene_hash  # of the files as they were read, whatever becomes of them
+    build_s = time.perf_counter() - start
+    return Stage(settled, colour, world, spectral.phases, scene.scene_hash, build_s, notices)
+
+
+def expose(
+    stage: Stage,
+    *,
+    started: float,
+    bands: int = 0,
+    layers: bool = False,
+    features: bool = False,
+    threads: int | None,
+    progress: ProgressCallback | None,
+) -> Image:
+    """Take the picture of ``stage``; ``started`` is when `time.perf_counter` saw the work begin.
+
+    Raises:
+        RenderInterrupted: Ctrl-C.
+    """
+    settled, world = stage.settled, stage.world
+    scene = settled.scene
     seen = features_of(scene, world, threads=threads) if features else None
     built = time.perf_counter()
     outcome = _trace(settled, world, bands=bands, layers=layers, threads=threads, progress=progress)
-    timings = {"build_s": built - start, "trace_s": time.perf_counter() - built}
+    timings = {"build_s": stage.build_s, "trace_s": time.perf_counter() - built}
     counts = outcome.samples()
     by_group, by_group_error = _by_group(outcome)
     has_bands = bands > 0 and outcome.spectral_radiance().size > 0
@@ -116,14 +170,14 @@ def render(
         seed=scene.image.seed,
         scene=scene,
         method=settled.method,
-        colour=colour,
+        colour=stage.colour,
         statistics=outcome.statistics() | timings | {"geometry_bytes": world.memory_bytes},
-        elapsed_s=time.perf_counter() - start,
-        notices=notices,
+        elapsed_s=time.perf_counter() - started,
+        notices=stage.notices,
         complete=not outcome.interrupted,
         interrupted=outcome.interrupted,
         version=_core.__version__,
-        command=_call(settled, colour, scene_hash),
+        command=_call(settled, stage.colour, stage.scene_hash),
     )
     if image.interrupted:
         raise RenderInterrupted(image)
