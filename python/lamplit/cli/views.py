@@ -93,19 +93,27 @@ def render_round(
     """
     from lamplit import engine
     from lamplit.cli.stopping import stop_signals
+    from lamplit.cli.watching import watched
     from lamplit.report.losses import Losses
+    from lamplit.report.preview import PreviewFile
     from lamplit.report.view_files import ViewWriter
 
     views = engine.plan_views(scene, **places, **asked)
-    progress = _progress(scene, views, asked["time_s"])
+    progress = _progress(scene, views)
     command = command_line(sys.argv)
     warnings: list[str] = []
     faults: list[str] = []
     interrupted = False
-    with ViewWriter(run.output, count=len(views), circle=views.circle, bits=bits) as writer:
+    with (
+        ViewWriter(run.output, count=len(views), circle=views.circle, bits=bits) as writer,
+        PreviewFile(run.output) as preview,
+    ):
+        images = views.images(
+            threads=run.threads, progress=progress.frame, preview=watched(progress, preview)
+        )
         with stop_signals() as stop, progress:
             try:
-                for image in views.images(threads=run.threads, progress=progress.frame):
+                for image in images:
                     writer.add(replace(image, command=command))
                     losses, frame = Losses.of(image), f"frame {len(writer)}"
                     warnings += [f"{frame}: {warning}" for warning in losses.warnings()]
@@ -125,17 +133,19 @@ def render_round(
         raise typer.Exit(1)
 
 
-def _progress(scene: Scene, views: Views, time_s: float | None) -> ViewsProgress:
+def _progress(scene: Scene, views: Views) -> ViewsProgress:
     from lamplit.engine import FIRST_ROUND_SAMPLES
     from lamplit.report.view_progress import ViewsProgress
 
     pixels = scene.image.width * scene.image.height
+    time_s, settled = views.settled.time_s, views.settled
     return ViewsProgress(
         "Rendering",
         count=len(views),
         pixels=pixels,
-        time_s=time_s,
-        first_round=FIRST_ROUND_SAMPLES * pixels if views.settled.adaptive else 0,
+        time_s=None if time_s is None else time_s * len(views),
+        first_round=FIRST_ROUND_SAMPLES * pixels if settled.adaptive else 0,
+        error=settled.error,
     )
 
 

@@ -17,6 +17,7 @@ from lamplit.engine.plan import FIRST_ROUND_SAMPLES, Plan, plan
 from lamplit.engine.receivers import Goniometer, Plane
 from lamplit.engine.reflectors import ReflexInterrupted, ReflexMeasurement, measure_reflector
 from lamplit.engine.render import RenderInterrupted, render
+from lamplit.engine.snapshot import Snapshot
 from lamplit.engine.views import Views, plan_views, render_views
 
 __all__ = [
@@ -37,6 +38,7 @@ __all__ = [
     "ReflexInterrupted",
     "ReflexMeasurement",
     "RenderInterrupted",
+    "Snapshot",
     "Views",
     "compare",
     "measure",

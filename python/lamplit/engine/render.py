@@ -18,6 +18,7 @@ from lamplit.engine.features import features_of
 from lamplit.engine.image import Image
 from lamplit.engine.ledger import Ledger
 from lamplit.engine.plan import Plan, plan
+from lamplit.engine.snapshot import PreviewCallback, Snapshot
 from lamplit.errors import SceneError
 from lamplit.scene import Scene
 from lamplit.scene.shining import light_notices, path_notices
@@ -52,6 +53,7 @@ def render(
     layers: bool = False,
     features: bool = False,
     progress: ProgressCallback | None = None,
+    preview: PreviewCallback | None = None,
 ) -> Image:
     """Render ``scene`` and return tristimulus values in cd/m² with their standard errors.
 
@@ -66,7 +68,10 @@ def render(
 
     ``threads`` of None takes one per core; the result does not depend on it, but for how far it
     comes in ``time_s``. ``spectral_bands`` keeps each pixel's spectrum, ``layers`` a picture for
-    each light group, ``features`` what each pixel looks at.
+    each light group, ``features`` what each pixel looks at. ``progress`` is called with the samples
+    done and to do, ``preview`` every two seconds or more with the picture so far: its ``xyz``,
+    ``xyz_standard_error``, ``samples`` over all pixels, ``relative_error`` and, where it is known,
+    ``relative_error_at_end``.
 
     Raises:
         LamplitError: The scene or an argument cannot be used, or arguments contradict each other.
@@ -92,6 +97,7 @@ def render(
         features=features,
         threads=threads,
         progress=progress,
+        preview=preview,
     )
 
 
@@ -139,6 +145,7 @@ def expose(
     features: bool = False,
     threads: int | None,
     progress: ProgressCallback | None,
+    preview: PreviewCallback | None = None,
 ) -> Image:
     """Take the picture of ``stage``; ``started`` is when `time.perf_counter` saw the work begin.
 
@@ -149,7 +156,15 @@ def expose(
     scene = settled.scene
     seen = features_of(scene, world, threads=threads) if features else None
     built = time.perf_counter()
-    outcome = _trace(settled, world, bands=bands, layers=layers, threads=threads, progress=progress)
+    outcome = _trace(
+        settled,
+        world,
+        bands=bands,
+        layers=layers,
+        threads=threads,
+        progress=progress,
+        preview=preview,
+    )
     timings = {"build_s": stage.build_s, "trace_s": time.perf_counter() - built}
     counts = outcome.samples()
     by_group, by_group_error = _by_group(outcome)
@@ -192,14 +207,25 @@ def _trace(
     layers: bool,
     threads: int | None,
     progress: ProgressCallback | None,
+    preview: PreviewCallback | None,
 ) -> _core.Render:
-    image = settled.scene.image
+    scene = settled.scene
+    image = scene.image
+
+    def show(
+        xyz: Array, standard_error: Array, samples: int, outlook: tuple[float, Array] | None
+    ) -> None:
+        if preview is not None:
+            preview(Snapshot(scene, xyz, standard_error, samples, outlook))
+
+    if progress is not None:
+        progress(0, image.width * image.height * image.samples)
     try:
         return world.render(
             image.width,
             image.height,
             image.samples,
-            _method(settled.scene),
+            _method(scene),
             adaptive=settled.adaptive,
             target_error=settled.error,
             time_budget_s=settled.time_s,
@@ -210,9 +236,10 @@ def _trace(
             layers=layers,
             threads=threads or 0,
             progress=progress,
+            preview=None if preview is None else show,
         )
     except ValueError as fault:
-        raise SceneError(str(fault), file=settled.scene.path) from fault
+        raise SceneError(str(fault), file=scene.path) from fault
 
 
 def _method(scene: Scene) -> _core.HallMethod | _core.PathMethod:

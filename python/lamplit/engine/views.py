@@ -11,6 +11,7 @@ from lamplit.engine.assembly import aim
 from lamplit.engine.image import Image
 from lamplit.engine.plan import Plan, plan
 from lamplit.engine.render import expose, set_stage
+from lamplit.engine.snapshot import PreviewCallback
 from lamplit.errors import LamplitError
 from lamplit.scene import Scene
 from lamplit.scene.eyes import (
@@ -44,7 +45,11 @@ class Views:
         return len(self.scenes)
 
     def images(
-        self, *, threads: int | None = None, progress: ViewsProgressCallback | None = None
+        self,
+        *,
+        threads: int | None = None,
+        progress: ViewsProgressCallback | None = None,
+        preview: PreviewCallback | None = None,
     ) -> Iterator[Image]:
         """Render one picture after the other, with the same seed, as `lamplit.render` would.
 
@@ -62,6 +67,7 @@ class Views:
                 started=started,
                 threads=threads,
                 progress=None if progress is None else _of_frame(progress, at),
+                preview=preview,
             )
             started = time.perf_counter()
 
@@ -126,6 +132,7 @@ def render_views(
     adaptive: bool | None = None,
     threads: int | None = None,
     progress: ViewsProgressCallback | None = None,
+    preview: PreviewCallback | None = None,
 ) -> Iterator[Image]:
     """Render ``scene`` from many places and return an iterator over the pictures.
 
@@ -136,7 +143,7 @@ def render_views(
 
     The scene is assembled once. Each picture is the one that `render` makes of the scene with its
     camera there, bit by bit. ``progress`` is called with the number of the frame, from 0, and
-    its samples done and to do.
+    its samples done and to do, ``preview`` as that of `render`.
 
     Raises:
         LamplitError: The scene or an argument cannot be used, there is no eye, or one sees nothing
@@ -154,7 +161,7 @@ def render_views(
         time_s=time_s,
         adaptive=adaptive,
     )
-    return views.images(threads=threads, progress=progress)
+    return views.images(threads=threads, progress=progress, preview=preview)
 
 
 def _of_frame(progress: ViewsProgressCallback, at: int) -> Callable[[int, int], object]:

@@ -6,6 +6,7 @@ mod features;
 mod pass;
 mod photometer;
 mod settings;
+mod snapshot;
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -22,6 +23,7 @@ use pass::Pass;
 pub use features::{features, Features};
 pub use photometer::{Batch, MeasureError, Photometer, BATCHES};
 pub use settings::{Method, RenderSettings, DEEPEST};
+pub use snapshot::{Outlook, Snapshot, Viewfinder};
 
 /// Where a rendering stands, shared with whoever watches it.
 #[derive(Debug, Default)]
@@ -32,6 +34,8 @@ pub struct Progress {
     pub total: AtomicU64,
     /// Set it to stop: what is done stays.
     pub cancelled: AtomicBool,
+    /// Shows the picture in the making.
+    pub viewfinder: Viewfinder,
 }
 
 impl Progress {
@@ -59,9 +63,6 @@ pub enum RenderError {
     #[error("the threads cannot be started: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
 }
-
-/// The most samples that a pixel takes before the next pixel has its turn.
-const LONGEST_PASS: u32 = 64;
 
 /// The stack of a thread, in bytes. One level of Hall's recursion takes about 4 KiB.
 const STACK: usize = 16 * 1024 * settings::DEEPEST_HALL as usize;
@@ -174,13 +175,17 @@ impl Rendering<'_> {
     ) {
         let started = Instant::now();
         let (mut next, mut length) = (samples.start, 1);
+        let is_counted = limit.is_some() || !self.settings.adaptive && time_budget.is_none();
+        let at_end = |pixel| limit.map_or(samples.len() as u32, |counts| counts.of(pixel));
         while next < samples.end && !self.progress.is_cancelled() {
             let end = samples.end.min(next + length);
             let Self { scene, settings, interior, progress } = *self;
             let pass = Pass { scene, settings, interior, samples: next..end, limit, progress };
+            let pass_started = Instant::now();
             tally.add(&pass.run(film));
             next = end;
-            length = (length * 2).min(LONGEST_PASS);
+            self.progress.viewfinder.show(|| Snapshot::of(film, is_counted.then_some(at_end)));
+            length = self.progress.viewfinder.next_length(length, pass_started.elapsed());
             if let Some(budget) = time_budget {
                 let spent = started.elapsed().as_secs_f64();
                 let left = (budget.as_secs_f64() - spent) / spent;
