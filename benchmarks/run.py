@@ -5,6 +5,7 @@ Leave the machine alone meanwhile. Each part writes a JSON file, a table and pic
 ``benchmarks/results/``, with the machine's name:
 
     unlit    time to the same error on unlit lamps, against Mitsuba 3 (nine minutes): ``unlit.*``
+    lit      lit lamps, methods at equal time, against Mitsuba 3 (a quarter of an hour): ``lit.*``
     candela  time to 1 % candela at test points, against Mitsuba 3 (six minutes): ``candela.*``
     walks    what splitting, roulette and allotting bring, in rays (four minutes): ``walks.*``
     path     what the `path` method costs by wavelengths, threads, memory (four minutes): ``path.*``
@@ -14,6 +15,7 @@ Leave the machine alone meanwhile. Each part writes a JSON file, a table and pic
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import json
 import statistics
 import subprocess
@@ -26,11 +28,13 @@ from typing import Any, Literal
 
 import candela
 import kernel
+import lit
 import numpy as np
 import numpy.typing as npt
 import path_method
 import unlit
 import walks
+from lit_scene import LAMPS
 from machine import machine, machine_line
 
 import lamplit as ll
@@ -39,7 +43,7 @@ from lamplit.lamps import write_lamp
 HERE = Path(__file__).resolve().parent
 RESULTS = HERE / "results"
 ROUNDS = 5
-PARTS = ("unlit", "candela", "walks", "path", "kernel")
+PARTS = ("unlit", "lit", "candela", "walks", "path", "kernel")
 
 
 def main() -> None:
@@ -47,22 +51,33 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="how fast Lamplit is")
     parser.add_argument("--parts", nargs="*", choices=PARTS, default=PARTS, help="all by default")
     parser.add_argument("--triangles", type=int, nargs="*", default=[100_000, 1_000_000, 5_000_000])
+    own = parser.add_argument_group("lit")
+    own.add_argument("--quick", action="store_true", help="small and short, into build/lit-quick/")
+    own.add_argument("--lamps", nargs="*", choices=tuple(LAMPS), default=lit.USUAL)
+    own.add_argument("--methods", nargs="*", default=lit.METHODS, help="of Lamplit; path first")
+    own.add_argument("--long", type=float, help="core seconds of the pictures' second line")
     options = parser.parse_args()
-    RESULTS.mkdir(exist_ok=True)
+    results = HERE.parent / "build" / "lit-quick" if options.quick else RESULTS
+    results.mkdir(parents=True, exist_ok=True)
     if "unlit" in options.parts:
-        unlit.measure(RESULTS)
+        unlit.measure(results)
+    if "lit" in options.parts:
+        settings = lit.QUICK if options.quick else lit.Settings()
+        if options.long:
+            settings = dataclasses.replace(settings, long_core_s=options.long)
+        lit.measure(results, settings, lamps=options.lamps, methods=options.methods)
     if "candela" in options.parts:
-        candela.measure(RESULTS)
+        candela.measure(results)
     if "walks" in options.parts:
-        walks.measure(RESULTS)
+        walks.measure(results)
     if "path" in options.parts:
-        path_method.measure(RESULTS)
+        path_method.measure(results)
     if "kernel" in options.parts:
-        measure_founding(options.triangles)
-    print(f"written to {RESULTS}")
+        measure_founding(options.triangles, results)
+    print(f"written to {results}")
 
 
-def measure_founding(triangles: list[int]) -> None:
+def measure_founding(triangles: list[int], folder: Path) -> None:
     """Measure the kernel at these numbers of triangles, the Hall method and the start-up."""
     build = "cargo build --release --locked --quiet --package lamplit-core --example ray_kernel"
     subprocess.run(build.split(), check=True)
@@ -70,10 +85,10 @@ def measure_founding(triangles: list[int]) -> None:
     results["kernel"] = [measure_kernel(count) for count in triangles]
     results["hall"] = measure_hall()
     results["help_s"] = measure_help()
-    (RESULTS / "bench.json").write_text(json.dumps(results, indent=2) + "\n", encoding="utf-8")
+    (folder / "bench.json").write_text(json.dumps(results, indent=2) + "\n", encoding="utf-8")
     page = as_markdown(results)
-    (RESULTS / "bench.md").write_text(page, encoding="utf-8")
-    draw_kernel(results["kernel"], RESULTS / "kernel.png")
+    (folder / "bench.md").write_text(page, encoding="utf-8")
+    draw_kernel(results["kernel"], folder / "kernel.png")
     print(page)
 
 

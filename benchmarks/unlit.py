@@ -29,7 +29,7 @@ from unlit_report import as_markdown, draw, write_pictures
 
 import lamplit as ll
 from lamplit.colour.tristimulus import xyz_of_xy
-from lamplit.report.develop import scene_white_xy
+from lamplit.report.view import scene_white_xy
 
 LAMPS = ("p21w", "led-array")
 LIGHTS: tuple[Light, ...] = ("surround", "studio")

@@ -13,8 +13,8 @@ from machine import machine_line
 
 import lamplit as ll
 from lamplit.colour.picture import to_picture
-from lamplit.report.develop import scene_display, scene_white_xy
 from lamplit.report.png import write_png
+from lamplit.report.view import display_of, scene_white_xy
 
 _COLOURS = {"lamplit": "#c1121f", "scalar_spectral": "#8d99ae", "llvm_ad_spectral": "#33658a"}
 #: Pixels of black between pictures.
@@ -138,7 +138,7 @@ def draw(found: dict[str, Any], path: Path) -> None:
 
 def write_pictures(scene: ll.Scene, shown: dict[str, Rung], folder: Path) -> None:
     """Write the programs' pictures at equal time side by side, in the order of ``shown``."""
-    display = scene_display(scene)
+    display = display_of(scene.display.space, root=scene.root)
     white = float(scene.display.white_luminance_cd_m2)
     parts: list[Array] = []
     for rung in shown.values():

@@ -13,6 +13,7 @@ from PIL import Image as Raster
 
 import lamplit as ll
 from builders.failures import Outcome, draw_failures
+from builders.views import draw_views
 from lamplit.colour.display import Display
 from lamplit.lamps import write_lamp
 from lamplit.materials import material
@@ -38,6 +39,7 @@ def draw_pictures(images: Path, outcomes: list[Outcome]) -> None:
     runpy.run_path("examples/demo.py", run_name="__main__")
     shutil.copyfile(_DEMO / "spectral.png", images / "p21w.png")
     _draw_demo_comparison(images / "p21w-rgb-against-spectral.png")
+    draw_views(images / "views.png", images / "false-colour.png")
     for name in _LAMPS:
         _draw_lamp(name, images / f"{name}.png")
 

@@ -20,6 +20,7 @@ _SECTIONS: dict[str, dict[str, str]] = {
     "image": {"ImageSettings": "`[image]`"},
     "display": {
         "DisplaySettings": "`[display]`",
+        "EyeSettings": "`[display.eye]`",
         "CustomDisplay": "`space = { primaries_xy, white_xy, gamma }`",
         "IccDisplay": "`space = { icc }`",
     },
@@ -116,6 +117,7 @@ _FORMS = {
     "Reflector": "reflector",
     "Radiator": "`{ source, luminance_cd_m2 }`",
     "CustomDisplay": "a table",
+    "EyeSettings": "a table",
     "CosineDistribution": "`{ cosine_exponent }`",
     "FileDistribution": "`{ file, axis, up }`",
     "Lacquer": "[a table](#finish)",

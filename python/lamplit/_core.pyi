@@ -18,6 +18,8 @@ __all__ = [
     "Emission",
     "HallMethod",
     "HallTerms",
+    "LightGuide",
+    "LitMethod",
     "Matter",
     "PathMethod",
     "Photometer",
@@ -203,6 +205,16 @@ class PathMethod:
     def __new__(cls, *, max_depth: int, split_depth: int, roulette_below: float) -> PathMethod: ...
 
 @final
+class LitMethod:
+    def __new__(cls, path: PathMethod, guide: LightGuide | None = None) -> LitMethod: ...
+
+@final
+class LightGuide:
+    def __new__(
+        cls, scene: Scene, path: PathMethod, *, seed: int = 1, threads: int = 0
+    ) -> LightGuide: ...
+
+@final
 class Scene:
     @property
     def memory_bytes(self) -> int: ...
@@ -223,12 +235,13 @@ class Scene:
         width: int,
         height: int,
         samples: int,
-        method: HallMethod | PathMethod,
+        method: HallMethod | PathMethod | LitMethod,
         *,
         first_sample: int = 0,
         adaptive: bool = False,
         target_error: float | None = None,
         time_budget_s: float | None = None,
+        counts: Sequence[int] | None = None,
         sampling: str = "sobol",
         filter: str = "gaussian",
         seed: int = 1,

@@ -13,6 +13,7 @@ import pytest
 
 from lamplit.engine.features import Features
 from lamplit.engine.image import Image
+from lamplit.scene.camera import DisplaySettings
 from lamplit.spectrum import SpectralDistribution
 
 
@@ -27,13 +28,13 @@ class FlatScene:
     observer: str = "cie-1931-2"
     root: Any = None
     settings: dict[str, Any] = field(default_factory=dict)
+    camera: Any = field(default_factory=lambda: SimpleNamespace(field_of_view_deg=20.0))
 
     @property
-    def display(self) -> SimpleNamespace:
+    def display(self) -> DisplaySettings:
         """The scene's [display]."""
-        values = {"space": self.space, "white": "D65", "adaptation": "cat16", "gamut": "map"}
-        values["white_luminance_cd_m2"] = self.white_luminance_cd_m2
-        return SimpleNamespace(**(values | self.settings))
+        values = {"space": self.space, "white_luminance_cd_m2": self.white_luminance_cd_m2}
+        return DisplaySettings.model_validate(values | self.settings)
 
     @property
     def image(self) -> SimpleNamespace:

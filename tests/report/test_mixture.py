@@ -16,7 +16,7 @@ from lamplit.report.develop import develop
 from lamplit.report.exr import write_exr
 from lamplit.report.exr_file import read_exr, save_exr
 from lamplit.report.layers import Layers, read_layers, write_layers
-from lamplit.report.mixture import MIXTURE_FILES, mix, write_mixture
+from lamplit.report.mixture import mix, mixture_files, write_mixture
 from lamplit.scene.camera import CustomDisplay, IccDisplay
 
 MakeImage = Callable[..., Image]
@@ -80,7 +80,7 @@ def test_a_mixture_is_written_with_its_weights_and_its_render(
     out = tmp_path / "mix"
     out.mkdir()
     write_mixture(mix(layers, {"background": 0.25}), out, command="lamplit mix d", version="9")
-    assert {path.name for path in out.iterdir()} == set(MIXTURE_FILES)
+    assert {path.name for path in out.iterdir()} == set(mixture_files(layers.view.settings))
     numbers = json.loads((out / "summary.json").read_text())
     assert numbers["weights"] == {"background": 0.25, "tail lamp": 1.0}
     assert numbers["command"] == "lamplit mix d"
@@ -122,7 +122,10 @@ def test_a_display_of_primaries_comes_back_and_a_profile_must_be_named(
     image.scene.space = own  # type: ignore[attr-defined]
     write_layers(tmp_path / "a.exr", image)
     assert read_layers(tmp_path / "a.exr").view.display.primaries_xy[0] == (0.66, 0.33)
-    assert read_layers(tmp_path / "a.exr", display="srgb").view.display.name == "srgb"
+    assert (
+        read_layers(tmp_path / "a.exr", changed={"display.space": "srgb"}).view.display.name
+        == "srgb"
+    )
     header = read_exr(tmp_path / "a.exr")
     view = json.loads(header.attributes["lamplit.view"]) | {"space": {"icc": "screen.icc"}}
     words = {name: header.attributes[f"lamplit.{name}"] for name in ("groups", "render")}
@@ -130,7 +133,10 @@ def test_a_display_of_primaries_comes_back_and_a_profile_must_be_named(
     save_exr(tmp_path / "b.exr", header.channels, attributes | {"lamplit.view": json.dumps(view)})
     with pytest.raises(LamplitError, match=r"b\.exr: its display was .* name a --display"):
         read_layers(tmp_path / "b.exr")
-    assert read_layers(tmp_path / "b.exr", display="rec2020").view.display.name == "rec2020"
+    assert (
+        read_layers(tmp_path / "b.exr", changed={"display.space": "rec2020"}).view.display.name
+        == "rec2020"
+    )
     assert IccDisplay(icc="screen.icc").model_dump() == view["space"]
 
 

@@ -11,9 +11,10 @@ import pytest
 
 from lamplit.engine import Ledger
 from lamplit.engine.image import Image
-from lamplit.report.develop import View, automatic_white, develop
+from lamplit.report.develop import automatic_exposure, develop
 from lamplit.report.gamut_mask import gamut_mask_picture
 from lamplit.report.summary import summary
+from lamplit.report.view import View
 
 MakeImage = Callable[..., Image]
 
@@ -85,11 +86,13 @@ def test_the_mask_marks_the_pixels_outside_and_no_other(make_image: MakeImage) -
 
 def test_automatic_white_leaves_one_pixel_in_a_hundred_above(make_image: MakeImage) -> None:
     grey = ramp() / [0.9, 1.0, 1.1]
-    view = View.of(make_image().scene)
-    white = automatic_white(grey, view)
+    image = make_image()
+    image.scene.white_luminance_cd_m2 = "auto"  # type: ignore[attr-defined]
+    view = View.of(image.scene)
+    white = automatic_exposure(grey, view).white_luminance_cd_m2
     assert white == pytest.approx(100.0, rel=1e-3)
     assert (grey[..., 1] > white).sum() == 1
-    assert automatic_white(np.zeros((2, 2, 3)), view) == 1.0
+    assert automatic_exposure(np.zeros((2, 2, 3)), view).white_luminance_cd_m2 == 1.0
 
 
 def test_automatic_white_leaves_a_saturated_red_its_colour(make_image: MakeImage) -> None:

@@ -40,7 +40,7 @@ mod _core {
     #[pymodule_export]
     use super::photometer::{Photometer, Rays, Receivers};
     #[pymodule_export]
-    use super::render::{HallMethod, PathMethod, Scene};
+    use super::render::{HallMethod, LightGuide, LitMethod, PathMethod, Scene};
 
     /// How many wavelengths a path carries.
     #[pymodule_export]

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0 OR MIT
 //! `Scene.render`: renders on threads of its own while Python watches and may interrupt.
 
-use std::sync::{PoisonError, RwLock, RwLockReadGuard};
+use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
 use std::time::Duration;
 
-use lamplit_core::render::{features, render, Method, RenderSettings};
+use lamplit_core::render::{features, learn, render, Method, RenderSettings};
 use lamplit_core::sampling::{PixelFilter, PixelSequence};
 use lamplit_core::scene;
-use lamplit_core::transport::{HallSettings, PathSettings};
+use lamplit_core::transport::{Guide, HallSettings, PathSettings};
 use numpy::PyArray3;
 use pyo3::prelude::*;
 
@@ -68,11 +68,53 @@ impl PathMethod {
     }
 }
 
-/// Either method.
+/// Path transport by walks that know where light comes from.
+#[pyclass(frozen, module = "lamplit._core")]
+pub struct LitMethod {
+    path: PathSettings,
+    guide: Option<Arc<Guide>>,
+}
+
+#[pymethods]
+impl LitMethod {
+    /// Spend walks as `path` says. What `guide` knows is used; without it, each rendering learns anew.
+    #[new]
+    #[pyo3(signature = (path, guide=None))]
+    fn new(path: &PathMethod, guide: Option<&LightGuide>) -> Self {
+        Self { path: path.0, guide: guide.map(|guide| guide.0.clone()) }
+    }
+}
+
+/// Where the light of what shines in a scene comes from.
+#[pyclass(frozen, module = "lamplit._core")]
+pub struct LightGuide(Arc<Guide>);
+
+#[pymethods]
+impl LightGuide {
+    /// Learn it from walks of the light, spent as `path` says.
+    #[new]
+    #[pyo3(signature = (scene, path, *, seed=1, threads=0))]
+    fn new(
+        py: Python<'_>,
+        scene: &Scene,
+        path: &PathMethod,
+        seed: u64,
+        threads: usize,
+    ) -> PyResult<Self> {
+        let learned = py.detach(|| {
+            let world = scene.world();
+            learn(&world, path.0, seed, threads)
+        });
+        Ok(Self(Arc::new(learned.map_err(value_error)?)))
+    }
+}
+
+/// Any method.
 #[derive(FromPyObject)]
 enum AnyMethod<'py> {
     Hall(PyRef<'py, HallMethod>),
     Path(PyRef<'py, PathMethod>),
+    Lit(PyRef<'py, LitMethod>),
 }
 
 #[pymethods]
@@ -116,8 +158,12 @@ impl Scene {
     /// end is not known; else it is the share of the work that is done, and what each standard error
     /// will be multiplied with, (height, width). If one of them raises, or a signal arrives, the
     /// rendering stops and what is done comes back with `interrupted` set.
+    ///
+    /// `counts` are samples from `first_sample` on for each pixel, row by row: they stand in for
+    /// `samples`, `adaptive`, `target_error` and `time_budget_s`.
     #[pyo3(signature = (
         width, height, samples, method, *, first_sample=0, adaptive=false, target_error=None, time_budget_s=None,
+        counts=None,
         sampling="sobol", filter="gaussian", seed=1, bands_per_lane=0, layers=false, threads=0,
         tile=64, progress=None, preview=None
     ))]
@@ -132,6 +178,7 @@ impl Scene {
         adaptive: bool,
         target_error: Option<f64>,
         time_budget_s: Option<f64>,
+        counts: Option<Vec<u32>>,
         sampling: &str,
         filter: &str,
         seed: u64,
@@ -143,20 +190,27 @@ impl Scene {
         preview: Option<Py<PyAny>>,
     ) -> PyResult<Render> {
         let time_budget = time_budget_s.map(Duration::try_from_secs_f64).transpose();
+        let guide = match &method {
+            AnyMethod::Lit(lit) => lit.guide.clone(),
+            _ => None,
+        };
         let settings = RenderSettings {
             width,
             height,
             samples: first_sample..first_sample.saturating_add(samples),
+            counts,
             adaptive,
             target_error,
             time_budget: time_budget.map_err(value_error)?,
             sequence: sequence(sampling, samples)?,
             filter: pixel_filter(filter)?,
             seed,
-            method: match method {
+            method: match &method {
                 AnyMethod::Hall(hall) => Method::Hall(hall.0),
                 AnyMethod::Path(path) => Method::Path(path.0),
+                AnyMethod::Lit(lit) => Method::Lit(lit.path),
             },
+            guide,
             bands_per_lane,
             layers,
             threads,

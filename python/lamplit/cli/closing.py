@@ -22,13 +22,21 @@ def picture_rows(numbers: Mapping[str, Any]) -> dict[str, str]:
     xy, shares = numbers["chromaticity_xy_of_mean"], luminance["percentiles"]
     spread = " | ".join(f"{shares[share]:.4g}" for share in ("5", "50", "95") if share in shares)
     mean, error = luminance["mean"], luminance.get("mean_standard_error")
-    return {
+    rows = {
         "luminance, mean": f"{mean:.4g}{'' if error is None else f' ± {error:.2g}'} cd/m²",
         "luminance, 5 | 50 | 95 %": f"{spread} cd/m²",
         "chromaticity of the mean": "none: black" if xy is None else f"{xy[0]:.4f}, {xy[1]:.4f}",
+        "shown as white": _exposure(display),
         f"outside {display['label']}": f"{100 * display['out_of_gamut_share']:.1f} % of the pixels",
         "brighter than white": f"{100 * display['over_white_share']:.1f} % of the pixels",
     }
+    glare = numbers.get("glare")
+    if glare is not None:
+        rows["glare"] = (
+            f"an eye of {glare['age']:g} years, pupil {glare['pupil_mm']:.2g} mm: "
+            f"{100 * glare['left_frame_share']:.2g} % of the light goes beyond the picture"
+        )
+    return rows
 
 
 def show_results(
@@ -92,3 +100,9 @@ def _heading(image: Image) -> str:
         f"{image.scene.name or 'Scene'}: {image.width} × {image.height}, "
         f"{samples} per pixel{spread}, {image.elapsed_s:.1f} s"
     )
+
+
+def _exposure(display: Mapping[str, Any]) -> str:
+    white, brightest = (display[f"{name}_luminance_cd_m2"] for name in ("white", "brightest"))
+    reach = "" if brightest is None else f", tone curve up to {brightest:.4g} cd/m² of white"
+    return f"{white:.4g} cd/m²{reach}"

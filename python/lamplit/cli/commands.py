@@ -16,6 +16,7 @@ from lamplit.errors import LamplitError, nearest_name
 COMMANDS = {
     "render": "Picture of the lamp: PNG, float EXR and numbers.",
     "compare": "RGB against spectral, side by side, with the colour differences.",
+    "develop": "Another exposure, tone, display, false colours or glare of a picture.",
     "mix": "Lit, unlit, dimmed: weigh and add the light groups of a render.",
     "measure": "Candela, colour and verdict of the lamp: tables, IES, plots.",
     "report": "One self-contained HTML page: verdict, test points, plots.",

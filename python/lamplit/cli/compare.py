@@ -12,9 +12,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from lamplit.cli.option_groups import grouped
 from lamplit.cli.overrides import command_line
-from lamplit.cli.scene_run import SceneRun, renders
+from lamplit.cli.scene_run import SceneRun
 from lamplit.cli.stopping import stop_signals
+from lamplit.cli.viewing import ExposureOptions
 from lamplit.errors import LamplitError
 
 if TYPE_CHECKING:
@@ -22,9 +24,10 @@ if TYPE_CHECKING:
     from lamplit.report.difference import Difference
 
 
-@renders
+@grouped
 def compare(
     run: SceneRun,
+    view: ExposureOptions,
     mark: Annotated[
         list[str] | None,
         typer.Option(
@@ -49,7 +52,7 @@ def compare(
     from lamplit.report.progress import Progress
 
     marks = None if mark is None else _places(mark)
-    scene = run.load()
+    scene = run.load(view.overrides())
     check_marks(marks or (), width=scene.image.width, height=scene.image.height)
     prepare_output(run.output, COMPARISON_FILES)
     with stop_signals() as stop, Progress("Comparing") as progress:

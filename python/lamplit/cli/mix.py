@@ -7,19 +7,22 @@ import math
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated
 
 import typer
 
-from lamplit.cli.options import DisplayOption
+from lamplit.cli.option_groups import grouped
 from lamplit.cli.overrides import command_line
+from lamplit.cli.viewing import ViewOptions
 from lamplit.errors import LamplitError
 
 #: Where the mixture goes below the folder of the render unless another place is named.
 _FOLDER = "mix"
 
 
+@grouped
 def mix(
+    view: ViewOptions,
     folder: Annotated[
         Path, typer.Argument(metavar="DIR", help="Where `lamplit render --layers` wrote to.")
     ],
@@ -36,23 +39,12 @@ def mix(
         Path | None,
         typer.Option("-o", "--output", metavar="OUT", help="Where the results go; else DIR/mix."),
     ] = None,
-    white: Annotated[
-        str | None,
-        typer.Option(
-            "--white",
-            metavar="CD_M2",
-            help="This luminance is shown as white, or auto; else as the scene said.",
-        ),
-    ] = None,
-    display: DisplayOption = None,
 ) -> None:
     """Weigh and add the light groups of the render in DIR: picture.png, picture.exr, summary.json.
 
     Nothing is traced. The standard errors of the sum are upper bounds: the weighted sums of those
     of the groups.
     """
-    from dataclasses import replace
-
     from lamplit import __version__
     from lamplit.cli.closing import picture_rows, show_table
     from lamplit.report import mixture as report
@@ -60,17 +52,13 @@ def mix(
     from lamplit.report.layers import LAYERS_FILE, read_layers
 
     weights = _weights(set_ or ())
-    exposure = None if white is None else _exposure(white)
-    name = None if display is None else display.value
-    layers = read_layers(folder / LAYERS_FILE, display=name)
-    if exposure is not None:
-        view = replace(layers.view, white_luminance_cd_m2=exposure)
-        layers = replace(layers, view=view)
+    layers = read_layers(folder / LAYERS_FILE, changed=view.overrides())
     mixed = report.mix(layers, weights)
     target = folder / _FOLDER if output is None else output
     if target.resolve() == folder.resolve():
         raise LamplitError("the render itself lies there; choose another place", where="-o")
-    prepare_output(target, report.MIXTURE_FILES)
+    files = report.mixture_files(layers.view.settings)
+    prepare_output(target, files)
     command = command_line(sys.argv)
     numbers = report.write_mixture(mixed, target, command=command, version=__version__)
     rows = picture_rows(numbers)
@@ -78,7 +66,7 @@ def mix(
     if bound is not None:
         rows["luminance, mean"] += f", standard error {bound:.2g} at most"
     heading = " + ".join(f"{weight:g} × {group}" for group, weight in mixed.weights.items())
-    show_table(heading, rows, target, report.MIXTURE_FILES)
+    show_table(heading, rows, target, files)
 
 
 def _weights(assignments: Sequence[str]) -> dict[str, float]:
@@ -97,17 +85,3 @@ def _weights(assignments: Sequence[str]) -> dict[str, float]:
             raise LamplitError(f"{name!r} is given two weights", where="--set")
         found[name] = weight
     return found
-
-
-def _exposure(text: str) -> float | Literal["auto"]:
-    if text == "auto":
-        return "auto"
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not (math.isfinite(value) and value > 0.0):
-        raise LamplitError(
-            f"{text!r} is no luminance; write cd/m² such as 500, or auto", where="--white"
-        )
-    return value

@@ -13,7 +13,9 @@ import typer
 class Method(str, Enum):
     """The transports there are."""
 
+    auto = "auto"
     path = "path"
+    lit = "lit"
     hall = "hall"
 
 
@@ -72,3 +74,6 @@ AllowLostOption = Annotated[
     ),
 ]
 BitsOption = Annotated[Bits, typer.Option("--bits", help="Bits per channel of the PNG.")]
+GamutMaskOption = Annotated[
+    bool, typer.Option("--gamut-mask", help="Also draw which pixels the display cannot show.")
+]

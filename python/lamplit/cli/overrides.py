@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from lamplit.cli.options import DisplayName, Method
+from lamplit.cli.options import Method
 from lamplit.errors import LamplitError
 
 if sys.version_info >= (3, 11):
@@ -29,7 +29,6 @@ def overrides(
     samples: int | None = None,
     seed: int | None = None,
     size: str | None = None,
-    display: DisplayName | None = None,
 ) -> dict[str, Any]:
     """Return ``{"image.samples": 4, ...}`` for `lamplit.scene.load_scene`.
 
@@ -53,7 +52,6 @@ def overrides(
         "image.method": None if method is None else method.value,
         "image.samples": samples,
         "image.seed": seed,
-        "display.space": None if display is None else display.value,
     }
     return found | {key: value for key, value in named.items() if value is not None}
 

@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from lamplit.cli.options import Bits, BitsOption
+from lamplit.cli.option_groups import grouped
+from lamplit.cli.options import Bits, BitsOption, GamutMaskOption
 from lamplit.cli.overrides import command_line
-from lamplit.cli.scene_run import SceneRun, renders
+from lamplit.cli.scene_run import SceneRun
 from lamplit.cli.stopping import stop_signals
+from lamplit.cli.viewing import ViewOptions
 from lamplit.cli.views import Round, render_round
 from lamplit.cli.watching import watched
 
@@ -26,9 +28,10 @@ if TYPE_CHECKING:
 _NAMED_BODIES = 4
 
 
-@renders
+@grouped
 def render(
     run: SceneRun,
+    view: ViewOptions,
     error: Annotated[
         float | None,
         typer.Option(
@@ -86,9 +89,7 @@ def render(
     spectral: Annotated[
         bool, typer.Option("--spectral", help="Keep the spectrum of each pixel in the EXR.")
     ] = False,
-    gamut_mask: Annotated[
-        bool, typer.Option("--gamut-mask", help="Also draw which pixels the display cannot show.")
-    ] = False,
+    gamut_mask: GamutMaskOption = False,
     bits: BitsOption = Bits.eight,
     max_memory: Annotated[
         float | None,
@@ -115,7 +116,7 @@ def render(
     from lamplit.scene.shining import light_groups
 
     places = Round(turntable, sweep, eyes)
-    scene = run.load()
+    scene = run.load(view.overrides())
     asked: dict[str, Any] = {
         "method": run.method_name,
         "samples": run.samples,
@@ -131,6 +132,8 @@ def render(
                 "--features": features,
                 "--spectral": spectral,
                 "--gamut-mask": gamut_mask,
+                "--false-colour": view.false_colour,
+                "--glare": view.glare,
             }
         )
         check_memory(memory_estimate(scene), None if max_memory is None else max_memory * 2**30)
@@ -142,7 +145,7 @@ def render(
         scene, bands=MOST_BANDS if spectral else 0, layers=len(light_groups(scene)) if layers else 0
     )
     check_memory(estimate, None if max_memory is None else max_memory * 2**30)
-    contents = picture_files(layers=layers, gamut_mask=gamut_mask)
+    contents = picture_files(scene.display, layers=layers, gamut_mask=gamut_mask)
     prepare_output(run.output, [*contents, PREVIEW_FILE])
     pixels = scene.image.width * scene.image.height
     progress = Progress(
@@ -171,7 +174,7 @@ def render(
         numbers = write_picture(
             image, run.output, bits=depth, spectral=spectral, gamut_mask=gamut_mask
         )
-    contents = picture_files(layers=bool(image.layers), gamut_mask=gamut_mask)
+    contents = picture_files(scene.display, layers=bool(image.layers), gamut_mask=gamut_mask)
     _tell(run.output, image, numbers, contents)
     stop.end_if_interrupted(image)
     end_if_refused(image, allow_lost=run.allow_lost)

@@ -3,15 +3,12 @@
 
 from __future__ import annotations
 
-import functools
-import inspect
-from collections.abc import Callable
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from lamplit.cli.options import (
     AllowLostOption,
-    DisplayOption,
     MethodOption,
     OutputOption,
     SamplesOption,
@@ -39,7 +36,6 @@ class SceneRun:
     size: SizeOption = None
     threads: ThreadsOption = None
     set_: SetOption = None
-    display: DisplayOption = None
     allow_lost: AllowLostOption = False
 
     @property
@@ -47,13 +43,15 @@ class SceneRun:
         """The method that was asked for, if any."""
         return None if self.method is None else self.method.value
 
-    def load(self) -> Scene:
+    def load(self, view: Mapping[str, Any]) -> Scene:
         """Return the scene with what the options change in it, its display found usable.
+
+        ``view`` are further values by key, of `ViewOptions` or `DisplayOption`.
 
         Raises:
             LamplitError: The scene or an option cannot be used.
         """
-        from lamplit.report.develop import check_display
+        from lamplit.report.view import check_display
         from lamplit.scene import load_scene
 
         changed = overrides(
@@ -62,25 +60,7 @@ class SceneRun:
             samples=self.samples,
             seed=self.seed,
             size=self.size,
-            display=self.display,
         )
-        loaded = load_scene(scene_file(self.scene), overrides=changed)
+        loaded = load_scene(scene_file(self.scene), overrides={**changed, **view})
         check_display(loaded)
         return loaded
-
-
-def renders(command: Callable[..., None]) -> Callable[..., None]:
-    """Let ``command(run: SceneRun, ...)`` take the options of `SceneRun` beside its own."""
-    shared = inspect.signature(SceneRun, eval_str=True).parameters
-    _, *own = inspect.signature(command, eval_str=True).parameters.values()
-    every = [*shared.values(), *own]
-
-    @functools.wraps(command)
-    def run(**given: object) -> None:
-        fields = {name: given.pop(name) for name in shared}
-        command(SceneRun(**fields), **given)  # pyright: ignore[reportArgumentType]
-
-    by_keyword = [option.replace(kind=inspect.Parameter.KEYWORD_ONLY) for option in every]
-    vars(run)["__signature__"] = inspect.Signature(by_keyword)
-    run.__annotations__ = {option.name: option.annotation for option in every}
-    return run

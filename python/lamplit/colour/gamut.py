@@ -55,6 +55,12 @@ def rgb_to_oklab(linear: ArrayLike, display: Display) -> NDArray[np.float64]:
     return np.cbrt(rgb @ oklab_matrix(display).T) @ _LAB_BALANCED.T
 
 
+def oklab_to_rgb(lab: ArrayLike, display: Display) -> NDArray[np.float64]:
+    """Return linear RGB (…, 3) of Oklab L, a, b (…, 3): what `rgb_to_oklab` came from."""
+    lms = (np.asarray(lab, dtype=np.float64) @ _FROM_LAB.T) ** 3
+    return lms @ np.linalg.inv(oklab_matrix(display)).T
+
+
 def outside_gamut(linear: ArrayLike) -> NDArray[np.bool_]:
     """Return where linear RGB (…, 3) has a chromaticity that the display lacks.
 

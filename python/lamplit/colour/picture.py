@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from lamplit.colour.adaptation import Adaptation, adaptation_matrix
 from lamplit.colour.display import Display
 from lamplit.colour.gamut import map_to_gamut, outside_gamut
+from lamplit.colour.tone import photographic
 from lamplit.errors import LamplitError
 
 GamutMapping = Literal["map", "clip"]
@@ -23,13 +24,14 @@ class Picture:
 
     #: Display values (H, W, 3) in [0, 1].
     encoded: NDArray[np.float64]
-    #: Linear RGB (H, W, 3) before any mapping, 1 at the white luminance.
+    #: Linear RGB (H, W, 3) before any tone curve and mapping, 1 at the white luminance.
     linear: NDArray[np.float64]
     #: Where the chromaticity lies outside the display's gamut, (H, W).
     out_of_gamut: NDArray[np.bool_]
     #: Share of the pixels that are out of gamut.
     gamut_share: float
-    #: Share of the pixels that are brighter than the display can show their chromaticity.
+    #: Share of the pixels that, without a tone curve, are brighter than the display can show
+    #: their chromaticity.
     over_white_share: float
 
 
@@ -52,13 +54,15 @@ def to_picture(
     white_xy: ArrayLike,
     adaptation: Adaptation = "cat16",
     gamut: GamutMapping = "map",
+    brightest_luminance_cd_m2: float | None = None,
 ) -> Picture:
     """Return the picture of XYZ in cd/m² (H, W, 3) on ``display``.
 
     ``white_luminance_cd_m2`` becomes the display's white, and ``white_xy``, the white that the eye
-    in the scene is adapted to, is brought to the display's white by ``adaptation``. Colours that
-    the display lacks are mapped with their hue (``map``) or cut off per channel (``clip``, which
-    shifts hues).
+    in the scene is adapted to, is brought to the display's white by ``adaptation``. With a
+    ``brightest_luminance_cd_m2``, the `photographic` tone curve bends all up to it into what the
+    display can show. Colours that the display lacks are mapped with their hue (``map``) or cut off
+    per channel (``clip``, which shifts hues).
 
     Raises:
         LamplitError: The white luminance is not positive, or XYZ holds numbers that are not
@@ -74,7 +78,12 @@ def to_picture(
         raise LamplitError(f"XYZ is not finite, first at {at}; a picture needs finite numbers")
     linear = linear_rgb(xyz, display=display, white_xy=white_xy, adaptation=adaptation)
     linear /= white_luminance_cd_m2
-    shown = map_to_gamut(linear, display)[0] if gamut == "map" else linear
+    shown = linear
+    if brightest_luminance_cd_m2 is not None:
+        reach = brightest_luminance_cd_m2 / white_luminance_cd_m2
+        shown = photographic(shown, reach, display)
+    if gamut == "map":
+        shown = map_to_gamut(shown, display)[0]
     outside = outside_gamut(linear)
     return Picture(
         encoded=display.encode(shown),

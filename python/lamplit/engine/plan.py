@@ -12,7 +12,9 @@ from lamplit.errors import LamplitError, nearest_name
 from lamplit.scene import Scene
 from lamplit.scene.camera import MOST_SAMPLES, ImageSettings
 
-METHODS = ("path", "hall")
+METHODS = ("path", "lit", "hall")
+#: Of these the plan takes what suits the scene.
+_AUTO = "auto"
 
 #: What the core takes of each pixel before it can tell how many samples an error or a time needs.
 FIRST_ROUND_SAMPLES = 16
@@ -31,7 +33,7 @@ class Plan:
 
     @property
     def method(self) -> str:
-        """``path`` or ``hall``."""
+        """``path``, ``lit`` or ``hall``."""
         return self.scene.image.method
 
     @property
@@ -55,17 +57,22 @@ def plan(
     Raises:
         LamplitError: A value cannot be used, or two of them contradict each other.
     """
-    if method is not None and method not in METHODS:
+    known = (_AUTO, *METHODS)
+    if method is not None and method not in known:
         raise LamplitError(
-            f"there is no method {method!r}{nearest_name(method, METHODS)}; "
-            f"choose one of {', '.join(METHODS)}"
+            f"there is no method {method!r}{nearest_name(method, known)}; "
+            f"choose one of {', '.join(known)}"
         )
     chosen = method or scene.image.method
+    if chosen == _AUTO:
+        chosen = "lit" if any(thing.emission for thing in scene.objects) else "path"
     _check(chosen, error=error, time_s=time_s, adaptive=adaptive, layers=layers)
     target = None if chosen == "hall" else error
-    if error is None and chosen == "path" and adaptive is not False:
+    if error is None and chosen != "hall" and adaptive is not False:
         target = scene.image.error
-    by_noise = (target or time_s) is not None if adaptive is None else adaptive
+    by_noise = adaptive
+    if by_noise is None:
+        by_noise = chosen == "lit" or (target or time_s) is not None
     most = samples
     if most is None:
         is_open = error is not None or time_s is not None or _leaves_samples_open(scene, target)
@@ -95,7 +102,7 @@ def _check(
     for what, is_asked in of_path.items():
         if is_asked and method == "hall":
             raise LamplitError(
-                f"{what} needs the method path, and this is hall; leave it out, or choose path"
+                f"{what} needs the method path or lit, and this is hall; leave it out, or choose another"
             )
     if error is not None and not 0.0 < error <= 1.0:
         raise LamplitError(

@@ -57,14 +57,15 @@ def render(
 ) -> Image:
     """Render ``scene`` and return tristimulus values in cd/m² with their standard errors.
 
-    ``method`` is ``path``, physical transport, or ``hall``, the founding method; None takes the
-    scene's. ``colour`` is ``rgb`` for the RGB half of a comparison.
+    ``method`` is ``path``, physical transport; ``lit``, the same for small lights behind optics,
+    which it learns to find; ``hall``, the founding method; or ``auto``: ``lit`` where an object
+    shines, else ``path``. None takes the scene's. ``colour`` is ``rgb`` for the RGB half of a comparison.
 
     ``samples`` per pixel stand in for the scene's own. ``error`` is the `Image.relative_error` to
     sample down to, and ``time_s`` the seconds to trace for; with either, ``samples`` is the most
     that a pixel takes on average, and None sets no limit of its own. ``adaptive`` allots samples to
     pixels by how noisy and costly a first round found their neighbours, so that no pixel is biased
-    by its own samples; None does so where there is an error to reach or a time to use.
+    by its own samples; None does so for ``lit``, and where there is an error or a time.
 
     ``threads`` of None takes one per core; the result does not depend on it, but for how far it
     comes in ``time_s``. ``spectral_bands`` keeps each pixel's spectrum, ``layers`` a picture for
@@ -124,7 +125,7 @@ def set_stage(settled: Plan, colour: Literal["spectral", "rgb"] = "spectral") ->
     """
     scene = settled.scene
     notices = light_notices(scene)
-    if settled.method == "path":
+    if settled.method != "hall":
         notices += path_notices(scene)
     spectral = SpectralCarrier(scene.image.wavelength_range_nm, scene.image.observer)
     carrier: Carrier = spectral
@@ -242,14 +243,15 @@ def _trace(
         raise SceneError(str(fault), file=scene.path) from fault
 
 
-def _method(scene: Scene) -> _core.HallMethod | _core.PathMethod:
-    if scene.image.method == "path":
+def _method(scene: Scene) -> _core.HallMethod | _core.PathMethod | _core.LitMethod:
+    if scene.image.method != "hall":
         path = scene.path_settings
-        return _core.PathMethod(
+        walks = _core.PathMethod(
             max_depth=path.max_depth,
             split_depth=path.split_depth,
             roulette_below=path.roulette_below,
         )
+        return _core.LitMethod(walks) if scene.image.method == "lit" else walks
     hall = scene.hall
     return _core.HallMethod(
         max_depth=hall.max_depth,

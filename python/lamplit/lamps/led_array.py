@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 OR MIT
-"""A rear lamp of twelve LEDs: dies on a board, collimators or reflector cups, a tinted cover.
+"""A rear lamp of twelve LEDs: dies on a board, collimators, cups or a white tray, and a cover.
 
 The dies' light-emitting faces lie in the plane z = 0; +z points at the observer. Neighbouring
 parts keep at least 0.2 mm apart.
@@ -11,25 +11,32 @@ from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from lamplit.lamps import studio
-from lamplit.lamps.cover import Cover, dome_sag, smooth_cover
+from lamplit.lamps.cover import Cover, dome_sag, pillow_cover, smooth_cover
 from lamplit.lamps.emitters import Collimator, Tray, grid_mm
 from lamplit.lamps.outlines import Superellipse
+from lamplit.lamps.patterns import check_pillow, pillow_depth
 from lamplit.lamps.recipe import (
     Lamp,
     LampParameters,
     LensColour,
+    Roughness,
     Table,
     Triangles,
     lens_material,
+    library_material,
     mesh_object,
 )
 from lamplit.lamps.shells import Housing
 from lamplit.lamps.solids import Floats, Solid, cuboid, repeated
 
 _BOARD_TOP_Z, _BOARD_BACK_Z = -2.5, -4.1
+#: Where there are no optics: the white floor, below the dies' faces, and the depth of its tray.
+_FLOOR_Z, _FLOOR_DEPTH_MM = -0.5, 12.0
+#: What the tray is made of.
+_TRAY = {"tir": "black-abs", "cups": "aluminium-bezel", "none": "white-paint"}
 _MARGIN_MM = 7.0
 _PMMA_INDEX = 1.49
 #: Flux of one die, in lm, of an indicator (True) and of a stop lamp: usual orders of size.
@@ -52,8 +59,11 @@ class Parameters(LampParameters):
         float, Field(ge=12.0, le=40.0, description="distance between neighbouring dies")
     ] = 17.0
     optics: Annotated[
-        Literal["tir", "cups"],
-        Field(description="totally reflecting collimators of clear PMMA, or aluminised cups"),
+        Literal["tir", "cups", "none"],
+        Field(
+            description="totally reflecting collimators of clear PMMA, aluminised cups, or none: "
+            "bare dies in a matt white tray"
+        ),
     ] = "tir"
     board: Annotated[
         Literal["white", "green"], Field(description="colour of the board's solder mask")
@@ -65,11 +75,28 @@ class Parameters(LampParameters):
     cover_dome_radius_mm: Annotated[
         float, Field(ge=300.0, le=10_000.0, description="radius of the cover's front")
     ] = 500.0
+    cover_optics: Annotated[
+        Literal["none", "pillows"], Field(description="what the inside of the cover carries")
+    ] = "none"
+    pillow_pitch_mm: Annotated[
+        float, Field(ge=2.0, le=20.0, description="side of one square pillow, where there are any")
+    ] = 6.0
+    pillow_radius_mm: Annotated[
+        float, Field(ge=2.0, le=500.0, description="radius of curvature of the pillows")
+    ] = 26.0
+    cover_roughness: Annotated[
+        Roughness, Field(description="GGX width of the cover's surfaces: 0 smooth, or 0.001 to 1")
+    ] = 0.0
     die_size_mm: Annotated[float, Field(ge=0.3, le=1.4, description="side of the square dies")] = (
         1.0
     )
     lit: Annotated[bool, Field(description="let each die shine, in its colour")] = False
     triangles: Triangles = 300_000
+
+    @model_validator(mode="after")
+    def _is_a_pillow(self) -> Parameters:
+        check_pillow(self.pillow_pitch_mm, self.pillow_radius_mm)
+        return self
 
     @property
     def amber(self) -> bool:
@@ -95,9 +122,11 @@ class _Layout:
 def build(parameters: Parameters) -> Lamp:
     """Return the lamp's meshes and scene."""
     layout = _layout(parameters)
-    meshes = {f"{name}.ply": solid for name, solid in _parts(parameters, layout).items()}
+    cover, crease = _cover(parameters, layout)
+    parts = {"cover": cover, **_parts(parameters, layout)}
+    meshes = {f"{name}.ply": solid for name, solid in parts.items()}
     title = f"Rear lamp, twelve LEDs, {parameters.cover_colour} cover"
-    return Lamp(title, _tables(parameters, layout), meshes)
+    return Lamp(title, _tables(parameters, layout, crease), meshes)
 
 
 def _layout(p: Parameters) -> _Layout:
@@ -107,18 +136,25 @@ def _layout(p: Parameters) -> _Layout:
     )
     collimator = Collimator(0.5 * p.pitch_mm - 0.9, _PMMA_INDEX)
     focal_length = 0.094 * p.pitch_mm
+    rise = 4.0
     if p.optics == "tir":
         hole = cup = collimator.radius + 0.4
         land = collimator.height - 0.6
-    else:
+    elif p.optics == "cups":
         hole, cup = 1.6 * focal_length, 0.5 * p.pitch_mm - 0.4
         land = cup**2 / (4.0 * focal_length) - focal_length
-    tray = Tray(p.pitch_mm, hole, cup, focal_length, land, land + 4.0)
+    else:
+        hole = cup = np.sqrt(2.0) * _package_half_mm(p) + 0.4
+        land, rise = _FLOOR_Z, _FLOOR_DEPTH_MM
+    tray = Tray(p.pitch_mm, hole, cup, focal_length, land, land + rise)
 
     curvature = 1.0 / p.cover_dome_radius_mm
     blank = Cover(outline, 0.0, p.cover_thickness_mm, curvature, 0.0)
     sag = float(dome_sag(np.array((outline.largest_radius_mm + blank.band) ** 2), curvature))
-    apex = tray.frame_z + 1.0 + sag + p.cover_thickness_mm
+    depth = p.cover_thickness_mm
+    if p.cover_optics == "pillows":
+        depth += blank.pedestal + pillow_depth(p.pillow_pitch_mm, p.pillow_radius_mm)
+    apex = tray.frame_z + 1.0 + sag + depth
     roll_end = Cover(outline, apex, p.cover_thickness_mm, curvature, 0.0).roll_end_z()
     cover = Cover(outline, apex, p.cover_thickness_mm, curvature, roll_end - 7.0)
     housing = Housing(
@@ -133,12 +169,23 @@ def _layout(p: Parameters) -> _Layout:
     return _Layout(outline, collimator, tray, cover, housing)
 
 
+def _package_half_mm(p: Parameters) -> float:
+    return 0.5 * p.die_size_mm + 0.5
+
+
+def _cover(p: Parameters, layout: _Layout) -> tuple[Solid, float]:
+    """Return the cover and the crease angle that it is shaded with."""
+    triangles = round((0.3 if p.optics == "tir" else 0.65) * p.triangles)
+    if p.cover_optics == "none":
+        return smooth_cover(layout.cover, triangles), 35.0
+    return pillow_cover(layout.cover, p.pillow_pitch_mm, p.pillow_radius_mm, triangles)
+
+
 def _parts(p: Parameters, layout: _Layout) -> dict[str, Solid]:
     places = grid_mm(*p.columns_rows, p.pitch_mm)
-    half, body = 0.5 * p.die_size_mm, 0.5 * p.die_size_mm + 0.5
+    half, body = 0.5 * p.die_size_mm, _package_half_mm(p)
     package = cuboid((-body, -body, _BOARD_TOP_Z + 0.2), (body, body, -0.3))
     parts = {
-        "cover": smooth_cover(layout.cover, round(0.3 * p.triangles)),
         "tray": layout.tray.solid(
             places, layout.outline, layout.cover.inner_offset - 2.0, round(0.25 * p.triangles)
         ),
@@ -151,7 +198,7 @@ def _parts(p: Parameters, layout: _Layout) -> dict[str, Solid]:
     return parts
 
 
-def _tables(p: Parameters, layout: _Layout) -> list[Table]:
+def _tables(p: Parameters, layout: _Layout, cover_crease: float) -> list[Table]:
     housing = layout.housing
     ground = -(layout.outline.half_height_mm + housing.outer_offset) - 0.5
     width = 2.0 * (layout.outline.half_width_mm + housing.outer_offset)
@@ -185,13 +232,13 @@ def _tables(p: Parameters, layout: _Layout) -> list[Table]:
         studio.point_light("key", "D65", 4000.0, (-300.0, 700.0, 1200.0)),
         *lights,
         *_materials(p),
-        mesh_object("cover", "cover", crease_deg=35.0),
+        mesh_object("cover", "cover", crease_deg=cover_crease),
         *([collimators] if p.optics == "tir" else []),
         mesh_object(
             "tray",
-            "black-abs" if p.optics == "tir" else "aluminium-bezel",
+            _TRAY[p.optics],
             crease_deg=35.0,
-            comment="the mask between the collimators, or cups",
+            comment="the mask between the collimators, the cups, or the white floor",
         ),
         mesh_object("housing", "black-abs", crease_deg=40.0),
         mesh_object("packages", "package"),
@@ -240,7 +287,10 @@ def _materials(p: Parameters) -> list[Table]:
         "green": [0.03, 0.04, 0.06, 0.13, 0.09, 0.04, 0.03, 0.05],
     }
     return [
-        Table("materials.cover", {"library": lens_material(p.cover_colour)}),
+        Table(
+            "materials.cover",
+            library_material(lens_material(p.cover_colour), p.cover_roughness),
+        ),
         Table("materials.solder-mask", _glossy(masks[p.board]), "drawn by eye, not measured"),
         Table("materials.package", _glossy(_PHOSPHOR if p.amber else _CERAMIC)),
         Table("materials.die", _glossy(_PHOSPHOR if p.amber else _BARE_DIE, 1.8)),

@@ -17,13 +17,16 @@ from lamplit.lamps import studio
 from lamplit.lamps.bulb import CAP_RADIUS_MM, Bulb
 from lamplit.lamps.cover import Cover, dome_sag, pillow_cover
 from lamplit.lamps.outlines import Superellipse
+from lamplit.lamps.patterns import check_pillow, pillow_depth
 from lamplit.lamps.recipe import (
     Lamp,
     LampParameters,
     LensColour,
+    Roughness,
     Table,
     Triangles,
     lens_material,
+    library_material,
     mesh_object,
 )
 from lamplit.lamps.shells import Housing, Paraboloid, bezel
@@ -58,6 +61,10 @@ class Parameters(LampParameters):
     focal_length_mm: Annotated[
         float, Field(ge=17.0, le=40.0, description="focal length of the reflector")
     ] = 20.0
+    reflector_roughness: Annotated[
+        Roughness,
+        Field(description="GGX width of the aluminised reflector: 0 smooth, or 0.001 to 1"),
+    ] = 0.0
     lens_colour: Annotated[LensColour, Field(description="PMMA of the lens")] = "red"
     lens_thickness_mm: Annotated[
         float, Field(ge=1.5, le=5.0, description="wall of the lens, without the pillows")
@@ -84,11 +91,7 @@ class Parameters(LampParameters):
 
     @model_validator(mode="after")
     def _fits(self) -> Parameters:
-        if self.pillow_radius_mm < 0.8 * self.pillow_pitch_mm:
-            raise ValueError(
-                "pillow_radius_mm must be at least 0.8 times pillow_pitch_mm, "
-                f"here {0.8 * self.pillow_pitch_mm:g}"
-            )
+        check_pillow(self.pillow_pitch_mm, self.pillow_radius_mm)
         if self.lens_dome_radius_mm < 1.4 * max(self.width_mm, self.height_mm):
             raise ValueError("lens_dome_radius_mm must be at least 1.4 times the lens's width")
         if self.focal_length_mm < max(self.width_mm, self.height_mm) / 6.5:
@@ -125,9 +128,8 @@ def _layout(p: Parameters) -> _Layout:
     rim = float(mirror.z(np.array(outline.largest_radius_mm)))
     bezel_z = max(rim + 4.0, 6.0)
 
-    half = 0.5 * p.pillow_pitch_mm
-    pillow = p.pillow_radius_mm - np.sqrt(p.pillow_radius_mm**2 - 2.0 * half**2)
-    depth = p.lens_thickness_mm + shape.pedestal + float(pillow)
+    pillow = pillow_depth(p.pillow_pitch_mm, p.pillow_radius_mm)
+    depth = p.lens_thickness_mm + shape.pedestal + pillow
     edge = outline.largest_radius_mm + shape.band
     sag = float(dome_sag(np.array(edge**2), shape.dome_curvature))
     apex = depth + 1.0 + max(bezel_z + sag, bulb.tip_z)
@@ -210,7 +212,7 @@ def _tables(p: Parameters, layout: _Layout, lens_crease: float) -> list[Table]:
             "lens", "lens", crease_deg=lens_crease, comment="the outer lens, pillows inside"
         ),
         mesh_object("bezel", "aluminium-bezel", crease_deg=40.0),
-        mesh_object("reflector", "aluminium", crease_deg=40.0, comment="focus in the origin"),
+        mesh_object("reflector", "reflector", crease_deg=40.0, comment="focus in the origin"),
         mesh_object("housing", "black-abs", crease_deg=40.0),
         mesh_object("envelope", "bulb-glass", crease_deg=40.0, comment="the bulb"),
         mesh_object("stem", "bulb-glass", crease_deg=40.0),
@@ -232,6 +234,7 @@ def _function(p: Parameters) -> dict[str, Any]:
 def _materials(p: Parameters) -> list[Table]:
     return [
         Table("materials.lens", {"library": lens_material(p.lens_colour)}),
+        Table("materials.reflector", library_material("aluminium", p.reflector_roughness)),
         Table(
             "materials.bulb-glass",
             {"kind": "dielectric", "refractive_index": {"cauchy": [1.513, 0.00396]}},

@@ -66,6 +66,25 @@ def pillow_height(xy: Floats, pitch_mm: float, radius_of_curvature_mm: float) ->
     return np.sqrt(radius2 - np.sum(local**2, axis=1)) - np.sqrt(radius2 - 0.5 * pitch_mm**2)
 
 
+def pillow_depth(pitch_mm: float, radius_of_curvature_mm: float) -> float:
+    """Return the height of a pillow's middle over its corners, in mm."""
+    return float(
+        pillow_height(np.full((1, 2), 0.5 * pitch_mm), pitch_mm, radius_of_curvature_mm)[0]
+    )
+
+
+def check_pillow(pitch_mm: float, radius_of_curvature_mm: float) -> None:
+    """Refuse pillows that are nearly half spheres: their corners would stand upright.
+
+    Raises:
+        ValueError: The radius is too small for the pitch.
+    """
+    if radius_of_curvature_mm < 0.8 * pitch_mm:
+        raise ValueError(
+            f"pillow_radius_mm must be at least 0.8 times pillow_pitch_mm, here {0.8 * pitch_mm:g}"
+        )
+
+
 def cube_corner_patch(
     outline: Superellipse,
     aperture: Literal["hexagonal", "triangular"],

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 from lamplit.lamps.solids import Solid
 
@@ -25,6 +25,17 @@ Triangles = Annotated[
     Field(ge=2_000, le=8_000_000, description="about how many triangles all meshes have together"),
 ]
 LensColour = Literal["red", "amber", "smoke", "clear"]
+
+
+def _rough_enough(roughness: float) -> float:
+    if 0.0 < roughness < _LEAST_ROUGHNESS:
+        raise ValueError(f"a roughness is 0 (smooth) or {_LEAST_ROUGHNESS:g} to 1")
+    return roughness
+
+
+#: What scenes take as the least width α of GGX that is not smooth.
+_LEAST_ROUGHNESS = 1e-3
+Roughness = Annotated[float, Field(ge=0.0, le=1.0), AfterValidator(_rough_enough)]
 
 
 #: A value of a TOML file; arrays of numbers may be numpy's.
@@ -75,3 +86,8 @@ def mesh_object(
 def lens_material(colour: LensColour) -> str:
     """Return the library's name of PMMA in this colour."""
     return "pmma-clear" if colour == "clear" else f"{colour}-pmma"
+
+
+def library_material(name: str, roughness: float) -> dict[str, TomlValue]:
+    """Return the library's material ``name`` with a GGX ``roughness``, 0 for its own surface."""
+    return {"library": name, **({"roughness": roughness} if roughness else {})}

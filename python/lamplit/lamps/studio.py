@@ -48,7 +48,7 @@ def camera(
 
 
 def picture(
-    *, white_luminance_cd_m2: float, method: Literal["path", "hall"] = "path", sampling: str = ""
+    *, white_luminance_cd_m2: float, method: Literal["auto", "hall"] = "auto", sampling: str = ""
 ) -> list[Table]:
     """Return the image and display tables; with "sobol", Hall's moiré turns into fine noise."""
     image: dict[str, TomlValue] = {"method": method, "width": 640, "height": 400, "samples": 16}

@@ -88,7 +88,7 @@ def measure_difference(
 ) -> Difference:
     """Compare two renders of one scene pixel by pixel with CIEDE2000 (CIE 142-2001).
 
-    Both are seen under the scene's white at the white luminance of the spectral picture.
+    Both are seen under the scene's white at the exposure of the spectral picture.
     ``marks`` are (column, row) of pixels to look at; without them, the places that differ most.
 
     Raises:
@@ -99,7 +99,7 @@ def measure_difference(
     if spectral.xyz.shape != rgb.xyz.shape:
         raise LamplitError("the RGB and the spectral picture differ in size; render both alike")
     developed = develop(spectral)
-    developed_rgb = develop(rgb, white_luminance_cd_m2=developed.white_luminance_cd_m2)
+    developed_rgb = develop(rgb, exposure=developed.exposure)
     delta_e = delta_e_2000(rgb.xyz, spectral.xyz, white_xyz=developed.white_xyz)
     if marks is None:
         seen = _seen(spectral, developed) & _seen(rgb, developed_rgb)

@@ -30,8 +30,9 @@ Plane = NDArray[np.float32]
 
 _UNITS = (
     "X, Y, Z: cd/m2 (Y is the luminance); standard_error.*: 1 sigma of the mean, cd/m2; "
-    "R, G, B: linear, 1 at whiteLuminance, not gamut-mapped; S0.*: W.m^-2.sr^-1.nm^-1; "
-    "samples: count; depth.mm: mm along the ray, infinite where nothing is; normal.X/Y/Z: of the "
+    "R, G, B: linear, 1 at whiteLuminance, no tone curve, not gamut-mapped; "
+    "S0.*: W.m^-2.sr^-1.nm^-1; samples: count; depth.mm: mm along the ray, infinite where nothing "
+    "is; normal.X/Y/Z: of the "
     "first surface, towards the eye; body: place in lamplit.bodies, from 0, or -1; albedo.X/Y/Z: "
     "of the first surface under equal-energy light, Y = 1 is white; interfaces: count"
 )
@@ -44,9 +45,9 @@ def write_exr(path: Path, image: Image, developed: Developed, *, spectral: bool 
     display's primaries before any gamut mapping, ``samples`` of the pixel, with ``spectral`` one
     ``S0.<λ>nm`` per band, and of an image with features ``depth.mm``, ``normal.X`` to ``.Z``,
     ``body``, ``albedo.X`` to ``.Z`` and ``interfaces``. Header: chromaticities and whiteLuminance
-    of the display, and all of `provenance`, each as ``lamplit.<name>``; ``lamplit.statistics`` has
-    the engine's counts, ``lamplit.losses`` what is missing from the picture, and
-    ``lamplit.bodies`` the names of the bodies, all as JSON.
+    of the display, ``lamplit.view``, from which `View` is read back, and all of `provenance`, each
+    as ``lamplit.<name>``; ``lamplit.statistics`` has the engine's counts, ``lamplit.losses`` what
+    is missing from the picture, and ``lamplit.bodies`` the names of the bodies, all as JSON.
 
     Raises:
         OutputError: The file cannot be written, or bands are asked for that were not rendered.
@@ -74,7 +75,7 @@ def picture_channels(xyz: Array, standard_error: Array, developed: Developed) ->
 
 
 def header(version: str, developed: Developed, facts: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the attributes of a picture: its display, and ``facts`` as ``lamplit.<name>``."""
+    """Return the attributes of a picture: its display, ``lamplit.view``, and all of ``facts``."""
     display = developed.display
     corners = np.concatenate([display.primaries_xy, [display.white_xy]]).ravel()
     own = {
@@ -82,7 +83,7 @@ def header(version: str, developed: Developed, facts: Mapping[str, Any]) -> dict
         "chromaticities": tuple(float(value) for value in corners),
         "whiteLuminance": float(developed.white_luminance_cd_m2),
     }
-    return own | fact_attributes(facts)
+    return own | fact_attributes({"view": developed.view.facts(), **facts})
 
 
 def fact_attributes(facts: Mapping[str, Any]) -> dict[str, str]:

@@ -14,11 +14,10 @@ from numpy.typing import NDArray
 from pydantic import TypeAdapter, ValidationError
 
 from lamplit.errors import LamplitError, OutputError
-from lamplit.report.develop import View, display_of, scene_white_xy
 from lamplit.report.exr import fact_attributes
 from lamplit.report.exr_file import ExrFile, planes, read_exr, save_exr
-from lamplit.report.provenance import described, provenance
-from lamplit.scene.camera import DisplaySettings, DisplaySpace
+from lamplit.report.provenance import provenance
+from lamplit.report.view import View
 
 if TYPE_CHECKING:
     from lamplit.engine.image import Image
@@ -61,25 +60,19 @@ def write_layers(path: Path, image: Image) -> None:
     for name, xyz in image.layers.items():
         channels |= planes(f"{name}.", "XYZ", xyz)
         channels |= planes(f"{name}.{_ERROR}", "XYZ", image.layers_standard_error[name])
-    display = image.scene.display
-    view = {
-        "space": described(display.space),
-        "white_xy": scene_white_xy(image.scene).tolist(),
-        "white_luminance_cd_m2": display.white_luminance_cd_m2,
-        "adaptation": display.adaptation,
-        "gamut": display.gamut,
-    }
     made = provenance(image)
+    view = View.of(image.scene).facts()
     facts = {"units": _UNITS, "groups": list(image.layers), "view": view, "render": made} | made
     save_exr(path, channels, {"software": f"Lamplit {image.version}", **fact_attributes(facts)})
 
 
-def read_layers(path: Path, *, display: str | None = None) -> Layers:
-    """Read back a file of `write_layers`; ``display`` is a name, instead of the render's.
+def read_layers(path: Path, *, changed: Mapping[str, object] | None = None) -> Layers:
+    """Read back a file of `write_layers`; ``changed`` are values of its view, "display.tone".
 
     Raises:
         OutputError: The file is missing, or has no layers of Lamplit.
-        LamplitError: Its display was an ICC profile, which it does not hold.
+        LamplitError: Its display was an ICC profile, which it does not hold, or it has no angles
+            for the glare that is asked for.
     """
     if not path.is_file():
         raise OutputError(
@@ -90,7 +83,7 @@ def read_layers(path: Path, *, display: str | None = None) -> Layers:
         groups: list[str] = TypeAdapter(list[str]).validate_json(_fact(file, "groups"))
         xyz = {name: _layer(file, f"{name}.") for name in groups}
         errors = {name: _layer(file, f"{name}.{_ERROR}") for name in groups}
-        view = _view(json.loads(_fact(file, "view")), display)
+        view = View.read(json.loads(_fact(file, "view")), changed or {})
         made: dict[str, Any] = TypeAdapter(dict[str, Any]).validate_json(_fact(file, "render"))
     except (KeyError, TypeError, ValueError, ValidationError) as fault:
         raise OutputError("this file has no layers that Lamplit wrote", file=path) from fault
@@ -105,18 +98,3 @@ def _fact(file: ExrFile, name: str) -> str:
 
 def _layer(file: ExrFile, prefix: str) -> Array:
     return file.vectors(prefix).astype(np.float64)
-
-
-def _view(written: dict[str, Any], display: str | None) -> View:
-    white = written.pop("white_xy")
-    asked = display or written.pop("space")
-    space: Any = TypeAdapter(DisplaySpace).validate_python(asked)
-    written.pop("space", None)
-    settings = DisplaySettings.model_validate(written)
-    return View(
-        display_of(space, root=None),
-        np.array(white, dtype=np.float64).reshape(2),
-        settings.white_luminance_cd_m2,
-        settings.adaptation,
-        settings.gamut,
-    )

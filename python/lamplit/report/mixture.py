@@ -7,31 +7,34 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lamplit.errors import LamplitError, nearest_name
 from lamplit.report.atomic import write_json
-from lamplit.report.develop import Developed, develop_xyz
+from lamplit.report.develop import develop_xyz
 from lamplit.report.exr import header, picture_channels
 from lamplit.report.exr_file import save_exr
 from lamplit.report.layers import Layers
-from lamplit.report.png import write_png
+from lamplit.report.provenance import text_facts
+from lamplit.report.showing import shown_files, write_shown
 from lamplit.report.summary import picture_numbers
+
+if TYPE_CHECKING:
+    from lamplit.scene.camera import DisplaySettings
 
 Array = NDArray[np.float64]
 
-#: What `write_mixture` writes, and what is in each file.
-MIXTURE_FILES = {
-    "picture.png": "the mixed picture, tagged for the display",
+_EXACT = {
     "picture.exr": "XYZ in cd/m² with upper bounds of their standard errors, linear RGB",
     "summary.json": "luminance, chromaticity, gamut, the weights, and the render they weigh",
 }
 _UNITS = (
     "X, Y, Z: cd/m2 (Y is the luminance); standard_error.*: upper bound of 1 sigma, the weighted "
-    "sum of the layers' own, cd/m2; R, G, B: linear, 1 at whiteLuminance, not gamut-mapped"
+    "sum of the layers' own, cd/m2; R, G, B: linear, 1 at whiteLuminance, no tone curve, "
+    "not gamut-mapped"
 )
 
 
@@ -71,10 +74,15 @@ def mix(layers: Layers, weights: Mapping[str, float]) -> Mixture:
     )
 
 
+def mixture_files(settings: DisplaySettings) -> dict[str, str]:
+    """Return the names that `write_mixture` writes, and what is in each file."""
+    return shown_files(settings) | _EXACT
+
+
 def write_mixture(
     mixture: Mixture, directory: Path, *, command: str, version: str
 ) -> dict[str, Any]:
-    """Write `MIXTURE_FILES` into ``directory`` and return the summary.
+    """Write `mixture_files` into ``directory`` and return the summary.
 
     Raises:
         OutputError: A file cannot be written; older files are left as they were.
@@ -82,26 +90,14 @@ def write_mixture(
     developed = develop_xyz(mixture.xyz, mixture.layers.view)
     render = mixture.layers.render
     facts = {"command": command, "weights": dict(mixture.weights), "render": dict(render)}
-    texts = {
-        "Title": str(render.get("scene", "")),
-        "Software": f"Lamplit {version}",
-        "Comment": "\n".join(f"{name}: {value}" for name, value in facts.items()),
-    }
-    numbers = _summary(mixture, developed, facts)
-    write_png(
-        directory / "picture.png", developed.picture.encoded, developed.display, provenance=texts
-    )
+    numbers = picture_numbers(mixture.xyz, mixture.standard_error_bound, developed)
+    luminance = numbers["luminance_cd_m2"]
+    luminance["mean_standard_error_bound"] = luminance.pop("mean_standard_error")
     channels = picture_channels(mixture.xyz, mixture.standard_error_bound, developed)
     attributes = header(version, developed, facts) | {"lamplit.units": _UNITS}
     save_exr(directory / "picture.exr", channels, attributes)
-    write_json(directory / "summary.json", numbers)
-    return numbers
-
-
-def _summary(mixture: Mixture, developed: Developed, facts: Mapping[str, Any]) -> dict[str, Any]:
-    shown = picture_numbers(mixture.xyz, mixture.standard_error_bound, developed)
-    luminance = shown["luminance_cd_m2"]
-    luminance["mean_standard_error_bound"] = luminance.pop("mean_standard_error")
-    view = mixture.layers.view
-    shown["display"] |= {"adaptation": view.adaptation, "gamut": view.gamut}
-    return {"lamplit_mixture": 1, **facts, **shown}
+    texts = text_facts(str(render.get("scene", "")), version, facts)
+    shown = write_shown(directory, mixture.xyz, developed, provenance=texts)
+    written = {"lamplit_mixture": 1, **facts, **numbers, **shown}
+    write_json(directory / "summary.json", written)
+    return written

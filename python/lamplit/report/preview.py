@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lamplit.errors import OutputError
-from lamplit.report.develop import View, develop_xyz
+from lamplit.report.develop import develop_xyz
 from lamplit.report.png import write_png
+from lamplit.report.view import View
 
 if TYPE_CHECKING:
     from typing_extensions import Self

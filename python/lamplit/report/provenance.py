@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -36,9 +37,13 @@ def provenance(image: Image) -> dict[str, Any]:
 
 def text_provenance(image: Image) -> dict[str, str]:
     """Return `provenance` as the text chunks of a PNG, keyed by PNG's own keywords."""
-    facts = provenance(image)
+    return text_facts(image.scene.name, image.version, provenance(image))
+
+
+def text_facts(title: str, version: str, facts: Mapping[str, Any]) -> dict[str, str]:
+    """Return ``facts`` as the text chunks of a PNG, keyed by PNG's own keywords."""
     lines = "\n".join(f"{name}: {value}" for name, value in facts.items())
-    return {"Title": image.scene.name, "Software": f"Lamplit {image.version}", "Comment": lines}
+    return {"Title": title, "Software": f"Lamplit {version}", "Comment": lines}
 
 
 def described(specification: Any) -> Any:

@@ -29,12 +29,6 @@ def summary(image: Image, developed: Developed) -> dict[str, Any]:
     known.
     """
     shown = picture_numbers(image.xyz, image.xyz_standard_error, developed)
-    settings = image.scene.display
-    shown["display"] |= {
-        "space": described(settings.space),
-        "adaptation": settings.adaptation,
-        "gamut": settings.gamut,
-    }
     return {
         "lamplit_summary": 1,
         **provenance(image),
@@ -60,6 +54,7 @@ def summary(image: Image, developed: Developed) -> dict[str, Any]:
 
 def picture_numbers(xyz: Array, standard_error: Array, developed: Developed) -> dict[str, Any]:
     """Return what XYZ (H, W, 3), in cd/m², show on their display, as plain JSON values."""
+    settings = developed.view.settings
     good = np.isfinite(xyz).all(axis=-1)
     luminance = xyz[..., 1][good]
     mean_xyz = xyz[good].mean(axis=0) if good.any() else np.zeros(3)
@@ -75,7 +70,12 @@ def picture_numbers(xyz: Array, standard_error: Array, developed: Developed) -> 
         "chromaticity_xy_of_mean": chromaticity(mean_xyz),
         "display": {
             "label": developed.display_label,
+            "space": described(settings.space),
             "white_luminance_cd_m2": float(developed.white_luminance_cd_m2),
+            "brightest_luminance_cd_m2": developed.exposure.brightest_luminance_cd_m2,
+            "tone": settings.tone,
+            "adaptation": settings.adaptation,
+            "gamut": settings.gamut,
             "out_of_gamut_share": float(developed.picture.gamut_share),
             "over_white_share": float(developed.picture.over_white_share),
         },

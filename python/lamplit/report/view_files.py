@@ -17,11 +17,12 @@ from numpy.typing import NDArray
 
 from lamplit.report.animation import FRAMES_PER_SECOND, Frame, write_animation
 from lamplit.report.atomic import prepare_output, write_json
-from lamplit.report.develop import View, automatic_white, develop
+from lamplit.report.develop import Exposure, automatic_exposure, develop
 from lamplit.report.exr import write_exr
 from lamplit.report.png import write_png
 from lamplit.report.provenance import text_provenance
 from lamplit.report.summary import summary
+from lamplit.report.view import View
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
 ANIMATION_FILE = "animation.png"
 _SUMMARY_FILE = "summary.json"
 _FRAME_FILE = re.compile(r"frame-(\d{3})\.(?:png|exr)")
-#: The automatic white is that of so many pixels at most, taken evenly from all frames.
+#: What the exposure is found from: so many pixels at most, taken evenly from all frames.
 _MOST_POOLED = 2_000_000
 
 Array = NDArray[np.float64]
@@ -46,7 +47,7 @@ def view_files(count: int) -> dict[str, str]:
     """Return what is shown of the files of ``count`` frames: names, and what is in them."""
     last = frame_name(count - 1)
     return {
-        f"frame-001.png to {last}.png": "the pictures, all under one white",
+        f"frame-001.png to {last}.png": "the pictures, all under one exposure",
         f"frame-001.exr to {last}.exr": "XYZ in cd/m² with standard errors, and linear RGB",
         ANIMATION_FILE: f"all of them in turn, {FRAMES_PER_SECOND} a second; a browser plays it",
         _SUMMARY_FILE: "of each frame: place, luminance, chromaticity, errors; and the command",
@@ -59,16 +60,16 @@ class _Written:
 
     #: The image without its arrays, which are kept elsewhere.
     image: Image
-    white_luminance_cd_m2: float
+    exposure: Exposure
     frame: Frame
     numbers: dict[str, Any]
 
 
 class ViewWriter:
-    """Writes pictures as they come, and at the end all of them under one white; use it by `with`.
+    """Writes pictures as they come, and in the end all under one exposure; use it by `with`.
 
-    A stated white is that of every frame. With ``auto`` a frame is first written under the white of
-    those so far; `finish` writes those anew that the white of all changes.
+    What the scene states of it holds for every frame. What it leaves to the picture is that of the
+    frames so far when one is written; `finish` writes those anew that all of them change.
     """
 
     def __init__(
@@ -109,14 +110,11 @@ class ViewWriter:
         Raises:
             OutputError: A file cannot be written.
         """
-        white = image.scene.display.white_luminance_cd_m2
-        if white == "auto":
-            if self._store is None:
-                self._store = _Store(self._folder)
-            self._store.append(image)
-            self._pool.add(image.xyz.reshape(-1, 3))
-            white = self._pool.white(image)
-        self._written.append(self._write(len(self._written), image, white))
+        if self._store is None:
+            self._store = _Store(self._folder)
+        self._store.append(image)
+        self._pool.add(image.xyz.reshape(-1, 3))
+        self._written.append(self._write(len(self), image, self._pool.exposure(image)))
 
     def finish(self) -> dict[str, Any]:
         """Write what is left once no frame is to come: animation and summary; return the summary.
@@ -127,19 +125,19 @@ class ViewWriter:
             OutputError: A file cannot be written.
         """
         if self._store is not None:
-            white = self._pool.white(self._written[0].image)
+            exposure = self._pool.exposure(self._written[0].image)
             for at, done in enumerate(self._written):
-                if done.white_luminance_cd_m2 != white:
+                if done.exposure != exposure:
                     image = self._store.image(at, done.image)
-                    self._written[at] = self._write(at, image, white)
+                    self._written[at] = self._write(at, image, exposure)
         _remove_frames(self._folder, beyond=len(self._written))
         shown = self._animate()
         numbers = self._summary(shown)
         write_json(self._folder / _SUMMARY_FILE, numbers)
         return numbers
 
-    def _write(self, at: int, image: Image, white: float) -> _Written:
-        developed = develop(image, white_luminance_cd_m2=white)
+    def _write(self, at: int, image: Image, exposure: Exposure) -> _Written:
+        developed = develop(image, exposure=exposure)
         name, encoded = frame_name(at), developed.picture.encoded
         write_png(
             self._folder / f"{name}.png",
@@ -150,7 +148,7 @@ class ViewWriter:
         )
         write_exr(self._folder / f"{name}.exr", image, developed)
         numbers = _frame_numbers(at, image) | summary(image, developed)
-        return _Written(_without_arrays(image), white, Frame.of(encoded), numbers)
+        return _Written(_without_arrays(image), exposure, Frame.of(encoded), numbers)
 
     @property
     def _is_whole(self) -> bool:
@@ -176,7 +174,8 @@ class ViewWriter:
             "command": first.image.command,
             "complete": self._is_whole and all(frame["complete"] for frame in frames),
             "frames_asked": len(self) if self._count is None else self._count,
-            "white_luminance_cd_m2": first.white_luminance_cd_m2,
+            "white_luminance_cd_m2": first.exposure.white_luminance_cd_m2,
+            "brightest_luminance_cd_m2": first.exposure.brightest_luminance_cd_m2,
             "animation": {
                 "file": ANIMATION_FILE,
                 "frames_per_second": FRAMES_PER_SECOND,
@@ -198,7 +197,7 @@ def write_views(
 
     Files: ``frame-001.png``, ``frame-001.exr`` and so on, ``animation.png``, which plays there and
     back, or round where the places are a full ``circle``, and ``summary.json``. All are shown
-    under one white: where the scene leaves it to the picture, that of all frames together. The
+    under one exposure: where the scene leaves it to the picture, that of all frames together. The
     pictures that came before a Ctrl-C are written.
 
     Raises:
@@ -244,9 +243,9 @@ class _Pool:
             self._step *= 2
             self._parts = [part[::2].copy() for part in self._parts]
 
-    def white(self, image: Image) -> float:
-        """Return the automatic white of them all, on the display of ``image``."""
-        return automatic_white(np.concatenate(self._parts)[None, :, :], View.of(image.scene))
+    def exposure(self, image: Image) -> Exposure:
+        """Return the exposure of them all, as the scene of ``image`` asks for it."""
+        return automatic_exposure(np.concatenate(self._parts)[None, :, :], View.of(image.scene))
 
 
 def _remove_frames(folder: Path, *, beyond: int) -> None:

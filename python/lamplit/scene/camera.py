@@ -89,8 +89,10 @@ Camera: TypeAlias = Annotated[
 class ImageSettings(Table):
     """Method, size, sampling, and the wavelengths that are followed."""
 
-    method: Literal["path", "hall"] = Field(
-        default="path", description="physical light transport, or the founding method"
+    method: Literal["auto", "path", "lit", "hall"] = Field(
+        default="auto",
+        description="physical light transport: path, or lit, which looks for small lights behind "
+        "optics; auto: lit where an object shines; hall: the founding method",
     )
     width: int = Field(default=640, ge=1, le=16384, description="pixels")
     height: int = Field(default=400, ge=1, le=16384, description="pixels")
@@ -102,12 +104,12 @@ class ImageSettings(Table):
     )
     error: Annotated[Positive, Field(le=1.0)] | None = Field(
         default=None,
-        description="path: standard error of a pixel's luminance, as a share, to sample down to",
+        description="path, lit: standard error of a pixel's luminance, as a share, to sample down to",
     )
     sampling: Literal["grid", "sobol"] = Field(
         default="grid",
         description="hall: an even grid in each pixel, or scrambled Sobol points: no moiré; "
-        "path: always Sobol",
+        "others: always Sobol",
     )
     filter: Literal["box", "tent", "gaussian"] = Field(
         default="gaussian",
@@ -181,13 +183,38 @@ DisplaySpace: TypeAlias = Annotated[
 ]
 
 
+class EyeSettings(Table):
+    """Whose eye the glare is that of."""
+
+    age: Annotated[Number, Field(ge=20.0, le=80.0)] = Field(
+        default=35.0, description="years: an older eye scatters more"
+    )
+    pupil_mm: Annotated[Number, Field(ge=2.0, le=8.0)] | Literal["auto"] = Field(
+        default="auto",
+        description="diameter; auto: that of an eye adapted to the picture's mean luminance",
+    )
+    pigmentation: Annotated[Number, Field(ge=0.0, le=1.2)] = Field(
+        default=0.5, description="0 for black eyes, 0.5 brown, 1 green, 1.2 light blue"
+    )
+
+
 class DisplaySettings(Table):
     """How the tristimulus values become a picture on a display."""
 
     space: DisplaySpace = Field(default="srgb", description="the display that the picture is for")
     white_luminance_cd_m2: Positive | Literal["auto"] = Field(
         default="auto",
-        description="this luminance becomes the display's white; auto: 99 % of the pixels fit",
+        description="this luminance becomes the display's white; auto: 99 % of the pixels fit, or "
+        "with the photographic tone, the picture's middle becomes middle grey",
+    )
+    tone: Literal["linear", "photographic"] = Field(
+        default="linear",
+        description="light above white is cut off, or bent into what the display can show",
+    )
+    brightest_luminance_cd_m2: Positive | Literal["auto"] = Field(
+        default="auto",
+        description="photographic: this luminance is shown as bright as the display can; auto: "
+        "that of the picture's brightest pixels",
     )
     white: SourceSpec = Field(
         default=NamedSource("D65"), description="the white that the eye is adapted to"
@@ -199,3 +226,10 @@ class DisplaySettings(Table):
         default="map",
         description="colours that the display lacks: map keeps their hue, clip shifts it",
     )
+    false_colour: bool = Field(
+        default=False, description="also draw the luminance, with a scale in cd/m²"
+    )
+    glare: bool = Field(
+        default=False, description="also draw the picture with the glare of the eye"
+    )
+    eye: EyeSettings = Field(default_factory=EyeSettings, description="whose glare it is")

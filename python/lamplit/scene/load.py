@@ -37,7 +37,7 @@ def load_scene(path: str | Path, *, overrides: Mapping[str, object] | None = Non
     file = Path(path)
     written = read_toml(file, noun="scene", error=SceneError)
     for key, value in (overrides or {}).items():
-        _override(written, key, value)
+        set_value(written, key, value)
     return _parsed(written, root=file.resolve().parent, path=file)
 
 
@@ -90,7 +90,7 @@ def _check_files(scene: Scene) -> None:
         resolve_inside(scene.root, icc, where="display.space.icc")
 
 
-def _override(written: dict[str, Any], key: str, value: object) -> None:
+def set_value(written: dict[str, Any], key: str, value: object) -> None:
     """Set ``value`` at a key path; tables on the way are made, list entries must be there."""
     parts = re.findall(r"[^.\[\]]+|\[\d+\]", key)
     plain = "".join(p if p.startswith("[") else f".{p}" for p in parts).removeprefix(".")

@@ -20,6 +20,8 @@ _MESH_BYTES_PER_VERTEX = 3 * 8
 _FILM_BYTES_PER_PIXEL = 56 + 8 + 2 * 24
 _BAND_BYTES_PER_PIXEL = 16
 _LAYER_BYTES_PER_PIXEL = 56 + 2 * 24
+#: A picture's spectra on twice its width and height, while glare is laid on it.
+_GLARE_BYTES_PER_PIXEL = 210
 #: Spectral bands of a pixel, at most.
 MOST_BANDS = 80
 #: The interpreter with its libraries, and spectral tables.
@@ -62,13 +64,15 @@ def memory_estimate(scene: Scene, *, bands: int = 0, layers: int = 0) -> MemoryE
         for mesh in own
     )
     pixels = scene.image.width * scene.image.height
+    per_pixel = _FILM_BYTES_PER_PIXEL + _BAND_BYTES_PER_PIXEL * bands
+    per_pixel += _LAYER_BYTES_PER_PIXEL * layers
+    per_pixel += _GLARE_BYTES_PER_PIXEL if scene.display.glare else 0
     return MemoryEstimate(
         triangles,
         meshes,
         _READING_BYTES_PER_TRIANGLE * max((len(mesh.triangles) for mesh in placed), default=0),
         _TRACER_BYTES_PER_TRIANGLE * triangles,
-        pixels
-        * (_FILM_BYTES_PER_PIXEL + _BAND_BYTES_PER_PIXEL * bands + _LAYER_BYTES_PER_PIXEL * layers),
+        pixels * per_pixel,
         _BASE_BYTES,
     )
 

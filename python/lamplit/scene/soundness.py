@@ -85,7 +85,7 @@ def _errors(scene: Scene) -> Iterator[Finding]:
 
 
 def _path_findings(scene: Scene) -> Iterator[Finding]:
-    if scene.image.method != "path":
+    if scene.image.method == "hall":
         return
     try:
         for notice in path_notices(scene):

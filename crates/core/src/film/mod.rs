@@ -46,6 +46,21 @@ impl PixelSums {
             (spread.max(0.0) / (n * (n - 1.0))).sqrt()
         })
     }
+
+    /// The sums of the samples that a pixel would have whose mean is the sum of both means, with their
+    /// standard errors.
+    fn plus(&self, other: &Self) -> Self {
+        let samples = self.samples.saturating_add(other.samples);
+        let n = f64::from(samples.max(1));
+        let means = [self.mean(), other.mean()];
+        let errors = [self.standard_error(), other.standard_error()];
+        let xyz = [0, 1, 2].map(|i| n * (means[0][i] + means[1][i]));
+        let squares = [0, 1, 2].map(|i| {
+            let variance = errors[0][i] * errors[0][i] + errors[1][i] * errors[1][i];
+            variance * n * (n - 1.0) + xyz[i] * xyz[i] / n
+        });
+        Self { xyz, squares, samples }
+    }
 }
 
 /// The spectral sums of one pixel: LANES·`per_lane` bands of equal width.
@@ -114,6 +129,27 @@ impl Film {
         }
     }
 
+    /// The picture that is the sum of pictures of the same form, taken independently: means add up, and
+    /// so do the squares of standard errors.
+    pub fn sum(films: Vec<Self>) -> Self {
+        let mut films = films.into_iter();
+        let Some(mut sum) = films.next() else {
+            return Self::new(0, 0, 0, 0);
+        };
+        for film in films {
+            let add = |own: &mut [PixelSums], other: &[PixelSums]| {
+                own.iter_mut().zip(other).for_each(|(own, other)| *own = own.plus(other));
+            };
+            add(&mut sum.pixels, &film.pixels);
+            add(&mut sum.layer_sums, &film.layer_sums);
+            sum.segments.iter_mut().zip(&film.segments).for_each(|(own, other)| *own += other);
+            let means = sum.band_means().into_iter().zip(film.band_means());
+            sum.band_sums = means.map(|(own, other)| own + other).collect();
+            sum.band_visits.fill(1);
+        }
+        sum
+    }
+
     /// How many bands a pixel has.
     pub fn bands(&self) -> usize {
         self.bands_per_lane * LANES
@@ -163,6 +199,30 @@ mod tests {
         let mut one = PixelSums::default();
         one.add([1.0; 3]);
         assert_eq!(one.standard_error(), [f64::INFINITY; 3]);
+    }
+
+    #[test]
+    fn a_sum_of_pictures_has_the_sum_of_means_and_the_sum_of_variances() {
+        let mut films = [Film::new(1, 1, 1, 1), Film::new(1, 1, 1, 1)];
+        let values: [&[f64]; 2] = [&[1.0, 2.0, 3.0], &[10.0, 30.0]];
+        for (film, values) in films.iter_mut().zip(values) {
+            for value in values {
+                film.pixels[0].add([*value; 3]);
+                film.layer_sums[0].add([0.5 * value; 3]);
+                let mut bands =
+                    BandSums { sums: &mut film.band_sums, visits: &mut film.band_visits };
+                bands.add(SampledSpectrum::splat(*value), SampledWavelengths { phase: 0 }, 1);
+            }
+        }
+        // Variances of the means: 1/3 and 100.
+        let sum = Film::sum(films.into());
+        let (mean, error) = (sum.pixels[0].mean()[1], sum.pixels[0].standard_error()[1]);
+        assert!(
+            (mean - 22.0).abs() < 1e-12 && (error - (100.0 + 1.0 / 3.0_f64).sqrt()).abs() < 1e-12
+        );
+        assert!((sum.layer_sums[0].mean()[0] - 11.0).abs() < 1e-12);
+        assert_eq!(sum.band_means(), vec![22.0; LANES]);
+        assert_eq!(sum.pixels[0].samples, 5);
     }
 
     #[test]

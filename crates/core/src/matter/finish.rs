@@ -43,6 +43,11 @@ impl Finish {
         self.table.as_deref().filter(|_| !is_bare)
     }
 
+    /// Whether some face is rough.
+    pub fn is_rough(&self) -> bool {
+        self.table.is_some()
+    }
+
     /// The α of a face by its outward geometric normal; 0 where it is smooth.
     pub fn alpha_at(&self, normal: DVec3) -> f64 {
         self.table_at(normal).map_or(0.0, AlbedoTable::alpha)

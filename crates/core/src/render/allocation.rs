@@ -6,11 +6,21 @@
 //! the pixels are coloured like a chess board, and all that is decided about a pixel (its noise, its
 //! cost, and the scale of both) comes from pixels of the other colour alone.
 
+use super::light_film::LightTrial;
 use crate::film::Film;
 use crate::sampling::PixelSequence;
 
-/// What a first round of samples tells of every pixel.
+/// What a first round of samples tells of every pixel, on each of the films whose sum is the picture.
 pub(super) struct Pilot {
+    films: Vec<Trial>,
+    /// The tone of every pixel: its luminance, held off black.
+    pub tone: Vec<f64>,
+    light: Option<LightTrial>,
+    width: usize,
+}
+
+/// What it tells of one film.
+struct Trial {
     /// The standard deviation of one sample's luminance, relative to the pixel's tone, as the
     /// neighbours have it.
     noise: Vec<f64>,
@@ -18,7 +28,6 @@ pub(super) struct Pilot {
     cost: Vec<f64>,
     /// Samples that every pixel has.
     samples: u32,
-    width: usize,
 }
 
 /// How many samples each pixel takes, those of the first round included.
@@ -60,54 +69,63 @@ impl Pilot {
     pub const USUAL: u32 = 16;
 
     /// Read a first round.
-    pub fn of(film: &Film) -> Self {
-        let (width, pixels) = (film.width as usize, &film.pixels);
-        let luminance: Vec<f64> = pixels.iter().map(|pixel| pixel.mean()[1]).collect();
+    pub fn of(films: &[&Film]) -> Self {
+        let width = films[0].width as usize;
+        let mut luminance = vec![0.0; films[0].pixels.len()];
+        for film in films {
+            for (sum, pixel) in luminance.iter_mut().zip(&film.pixels) {
+                *sum += pixel.mean()[1];
+            }
+        }
         let means = by_colour(&luminance, width);
-        let mut noise = vec![0.0; pixels.len()];
-        for (at, noise) in noise.iter_mut().enumerate() {
-            let tone = luminance[at] + FLOOR * means[colour(at, width)];
-            let variance = pixels[at].standard_error()[1].powi(2) * f64::from(pixels[at].samples);
-            *noise = if tone > 0.0 { variance / (tone * tone) } else { 0.0 };
-        }
-        let cost = film.segments.iter().zip(pixels);
-        let cost = cost.map(|(segments, pixel)| *segments as f64 / f64::from(pixel.samples.max(1)));
-        let cost: Vec<f64> = cost.map(|cost| cost.max(1.0)).collect();
-        let mut noise: Vec<f64> =
-            round(&noise, width).iter().map(|variance| variance.sqrt()).collect();
-        let means = by_colour(&noise, width);
-        for (at, noise) in noise.iter_mut().enumerate() {
-            let mean = means[colour(at, width)];
-            *noise = noise.clamp(QUIETEST * mean, LOUDEST * mean);
-        }
-        let samples = pixels.iter().map(|pixel| pixel.samples).max().unwrap_or(0);
-        Self { noise, cost: round(&cost, width), samples, width }
+        let tone = luminance.iter().enumerate();
+        let tone: Vec<f64> = tone.map(|(at, own)| own + FLOOR * means[colour(at, width)]).collect();
+        let films = films.iter().map(|film| Trial::of(film, &tone)).collect();
+        Self { films, tone, light: None, width }
     }
-}
 
-impl Pilot {
-    /// The samples that bring the root mean square of the relative errors to `target`, or as low as
-    /// the cost of `mean_samples` of every pixel allows.
+    /// Share what there is with walks from lights, too.
+    pub fn share_with(&mut self, light: LightTrial) {
+        self.light = Some(light).filter(|light| light.variance > 0.0);
+    }
+
+    /// The samples, on each film, that bring the root mean square of the relative errors to `target`,
+    /// or as low as the cost of `mean_samples` of every pixel on every film allows.
     ///
-    /// The sum of squares Σ sᵢ²/nᵢ at the cost Σ nᵢ·cᵢ is least for nᵢ ∝ sᵢ/√cᵢ (Neyman).
-    pub fn allocate(&self, mean_samples: f64, target: Option<f64>) -> Allocation {
+    /// The sum of squares Σ sᵢ²/nᵢ at the cost Σ nᵢ·cᵢ is least for nᵢ ∝ sᵢ/√cᵢ (Neyman), over the
+    /// pixels of all films: so the films share what there is.
+    /// To them come the paths of walks from lights.
+    pub fn allocate(&self, mean_samples: f64, target: Option<f64>) -> (Vec<Allocation>, f64) {
         let scales = [0, 1].map(|colour| self.scale(colour, mean_samples, target));
-        let counts = (0..self.noise.len()).map(|at| self.count(at, scales[colour(at, self.width)]));
-        Allocation { counts: counts.collect() }
+        let counts = |trial: &Trial| {
+            let pixels = 0..trial.noise.len();
+            pixels.map(|at| trial.count(at, scales[colour(at, self.width)])).collect()
+        };
+        let allocations = self.films.iter().map(|trial| Allocation { counts: counts(trial) });
+        let paths = self.light_paths(0.5 * (scales[0] + scales[1]));
+        (allocations.collect(), paths)
     }
 
     /// The scale of the samples for the pixels of one colour.
     fn scale(&self, of_colour: usize, mean_samples: f64, target: Option<f64>) -> f64 {
-        let pixels = || (0..self.noise.len()).filter(|at| colour(*at, self.width) == of_colour);
-        let number = pixels().count() as f64;
-        let affordable = mean_samples * pixels().map(|at| self.cost[at]).sum::<f64>();
+        let all = 0..self.films[0].noise.len();
+        let own: Vec<usize> = all.filter(|at| colour(*at, self.width) == of_colour).collect();
+        let pixels = || self.films.iter().flat_map(|trial| own.iter().map(move |at| (trial, *at)));
+        let affordable = mean_samples * pixels().map(|(trial, at)| trial.cost[at]).sum::<f64>();
         let suffices = |scale: f64| {
             let (mut cost, mut squares) = (0.0, 0.0);
-            for at in pixels() {
-                let count = f64::from(self.count(at, scale));
-                cost += count * self.cost[at];
-                squares += self.noise[at].powi(2) / count;
+            if let Some(light) = &self.light {
+                // Each colour has half of the pixels that these walks serve.
+                let paths = self.light_paths(scale);
+                cost += 0.5 * paths * light.cost;
+                squares += 0.5 * light.variance / paths;
             }
+            for (trial, at) in pixels() {
+                let count = f64::from(trial.count(at, scale));
+                cost += count * trial.cost[at];
+                squares += trial.noise[at].powi(2) / count;
+            }
+            let number = own.len() as f64;
             cost >= affordable || target.is_some_and(|target| squares <= target * target * number)
         };
         let (mut low, mut high) = (0.0, 1.0);
@@ -124,6 +142,43 @@ impl Pilot {
         }
         high
     }
+}
+
+impl Pilot {
+    /// How many walks from lights there are at a scale.
+    fn light_paths(&self, scale: f64) -> f64 {
+        self.light.as_ref().map_or(0.0, |light| scale * (light.variance / light.cost).sqrt())
+    }
+}
+
+impl Trial {
+    fn of(film: &Film, tone: &[f64]) -> Self {
+        let (width, pixels) = (film.width as usize, &film.pixels);
+        let noise: Vec<f64> = pixels
+            .iter()
+            .zip(tone)
+            .map(|(pixel, tone)| {
+                let variance = pixel.standard_error()[1].powi(2) * f64::from(pixel.samples);
+                if *tone > 0.0 {
+                    variance / (tone * tone)
+                } else {
+                    0.0
+                }
+            })
+            .collect();
+        let cost = film.segments.iter().zip(pixels);
+        let cost = cost.map(|(segments, pixel)| *segments as f64 / f64::from(pixel.samples.max(1)));
+        let cost: Vec<f64> = cost.map(|cost| cost.max(1.0)).collect();
+        let mut noise: Vec<f64> =
+            round(&noise, width).iter().map(|variance| variance.sqrt()).collect();
+        let means = by_colour(&noise, width);
+        for (at, noise) in noise.iter_mut().enumerate() {
+            let mean = means[colour(at, width)];
+            *noise = noise.clamp(QUIETEST * mean, LOUDEST * mean);
+        }
+        let samples = pixels.iter().map(|pixel| pixel.samples).max().unwrap_or(0);
+        Self { noise, cost: round(&cost, width), samples }
+    }
 
     fn count(&self, at: usize, scale: f64) -> u32 {
         const MOST: f64 = PixelSequence::MOST_SAMPLES as f64;
@@ -133,6 +188,11 @@ impl Pilot {
 }
 
 impl Allocation {
+    /// So many for each pixel.
+    pub fn given(counts: Vec<u32>) -> Self {
+        Self { counts }
+    }
+
     /// How many samples the pixel takes.
     pub fn of(&self, pixel: usize) -> u32 {
         self.counts[pixel]
@@ -221,7 +281,8 @@ mod tests {
         loud.pixels[own].samples = 16;
         loud.segments[own] = 1000;
         for target in [None, Some(0.01)] {
-            let [quiet, loud] = [&quiet, &loud].map(|film| Pilot::of(film).allocate(64.0, target));
+            let [quiet, loud] =
+                [&quiet, &loud].map(|film| Pilot::of(&[film]).allocate(64.0, target).0.remove(0));
             assert_eq!(quiet.of(own), loud.of(own), "{target:?}");
             assert_ne!(quiet.of(at(5, 6)), loud.of(at(5, 6)), "{target:?}");
         }
@@ -229,8 +290,8 @@ mod tests {
 
     #[test]
     fn counts_follow_the_noise_round_a_pixel_and_spend_what_there_is() {
-        let pilot = Pilot::of(&film(|column, _| if column < 6 { 0.3 } else { 0.1 }));
-        let allocation = pilot.allocate(200.0, None);
+        let film = film(|column, _| if column < 6 { 0.3 } else { 0.1 });
+        let allocation = Pilot::of(&[&film]).allocate(200.0, None).0.remove(0);
         let ratio = f64::from(allocation.of(at(2, 6))) / f64::from(allocation.of(at(9, 6)));
         assert!((ratio - 3.0).abs() < 0.05, "{ratio}");
         let mean = allocation.total() as f64 / f64::from(SIZE * SIZE);
@@ -239,7 +300,7 @@ mod tests {
 
     #[test]
     fn a_target_takes_no_more_samples_than_it_needs() {
-        let allocation = Pilot::of(&film(|_, _| 0.5)).allocate(1e5, Some(0.01));
+        let allocation = Pilot::of(&[&film(|_, _| 0.5)]).allocate(1e5, Some(0.01)).0.remove(0);
         // Relative to a tone of 1.01: (0.5/1.01/0.01)² samples.
         let expected = (0.5_f64 / 1.01 / 0.01).powi(2).ceil() as u32;
         assert!(allocation.counts.iter().all(|count| count.abs_diff(expected) <= 1));
@@ -251,15 +312,30 @@ mod tests {
         for (pixel, segments) in film.segments.iter_mut().enumerate() {
             *segments = if pixel % (SIZE as usize) < 6 { 64 } else { 16 };
         }
-        let allocation = Pilot::of(&film).allocate(1000.0, None);
+        let allocation = Pilot::of(&[&film]).allocate(1000.0, None).0.remove(0);
         let ratio = f64::from(allocation.of(at(9, 6))) / f64::from(allocation.of(at(2, 6)));
         assert!((ratio - 2.0).abs() < 0.01, "{ratio}");
+    }
+
+    #[test]
+    fn walks_from_lights_share_by_their_noise_and_cost() {
+        // As noisy as all pixels together, and four times as dear: half as many.
+        let film = film(|_, _| 0.2);
+        let mut pilot = Pilot::of(&[&film]);
+        let pixels = f64::from(SIZE * SIZE);
+        let variance = pixels * (0.2_f64 / 1.01).powi(2);
+        pilot.share_with(LightTrial { variance, cost: 4.0 });
+        let (allocations, paths) = pilot.allocate(1e4, None);
+        let each = f64::from(allocations[0].of(at(5, 5)));
+        assert!((paths / (each * pixels.sqrt()) - 0.5).abs() < 0.01, "{paths} {each}");
+        let spent = allocations[0].total() as f64 + 4.0 * paths;
+        assert!((spent / (1e4 * pixels) - 1.0).abs() < 0.01, "{spent}");
     }
 
     #[test]
     fn a_black_picture_takes_the_least() {
         let mut film = Film::new(2, 2, 0, 0);
         film.pixels.iter_mut().for_each(|pixel| (0..16).for_each(|_| pixel.add([0.0; 3])));
-        assert_eq!(Pilot::of(&film).allocate(1000.0, Some(0.01)).total(), 4 * 16);
+        assert_eq!(Pilot::of(&[&film]).allocate(1000.0, Some(0.01)).0[0].total(), 4 * 16);
     }
 }

@@ -3,6 +3,8 @@
 
 mod allocation;
 mod features;
+mod learning;
+mod light_film;
 mod pass;
 mod photometer;
 mod settings;
@@ -16,11 +18,13 @@ use thiserror::Error;
 
 use crate::film::Film;
 use crate::scene::{Interior, Scene};
-use crate::transport::Tally;
+use crate::transport::{Guide, LightSource, Part, Shining, Tally};
 use allocation::{Allocation, Pilot};
+use light_film::LightFilm;
 use pass::Pass;
 
 pub use features::{features, Features};
+pub use learning::learn;
 pub use photometer::{Batch, MeasureError, Photometer, BATCHES};
 pub use settings::{Method, RenderSettings, DEEPEST};
 pub use snapshot::{Outlook, Snapshot, Viewfinder};
@@ -59,6 +63,14 @@ pub enum RenderError {
         /// What was asked for.
         asked: u32,
     },
+    /// Not every pixel has a count of samples.
+    #[error("there are {counts} counts of samples for {pixels} pixels")]
+    Counts {
+        /// How many pixels there are.
+        pixels: usize,
+        /// How many counts there are.
+        counts: usize,
+    },
     /// The threads cannot be started.
     #[error("the threads cannot be started: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
@@ -94,7 +106,30 @@ pub fn render(
     let interior = eye_interior(scene)?;
     let threads = rayon::ThreadPoolBuilder::new().num_threads(settings.threads);
     let pool = threads.stack_size(STACK).build()?;
-    pool.install(|| Ok(Rendering { scene, settings, interior, progress }.run()))
+    pool.install(|| {
+        let began = Instant::now();
+        let guide = learning::guide(scene, settings);
+        let (guide, source) = (guide.as_deref(), LightSource::from(Shining::of(scene)));
+        let shown = light_film(scene, &source, settings);
+        let leaves_rough = shown.is_some();
+        let rendering =
+            Rendering { scene, settings, interior, guide, leaves_rough, progress, began };
+        Ok(rendering.run(shown))
+    })
+}
+
+/// The film of walks from lights, where these have a part: in a picture without spectra whose samples
+/// are allotted, if something rough and transparent is there.
+fn light_film<'a>(
+    scene: &'a Scene,
+    source: &'a LightSource,
+    settings: &'a RenderSettings,
+) -> Option<LightFilm<'a>> {
+    let Method::Lit(path) = settings.method else {
+        return None;
+    };
+    let is_for_it = settings.allots() && settings.bands_per_lane == 0 && scene.has_rough_glass();
+    is_for_it.then(|| LightFilm::new(scene, source, path, settings).ok()).flatten()
 }
 
 /// The bodies that the eye is in.
@@ -107,30 +142,57 @@ struct Rendering<'a> {
     scene: &'a Scene,
     settings: &'a RenderSettings,
     interior: Interior,
+    guide: Option<&'a Guide>,
+    /// Whether walks from lights show what they send through rough boundaries.
+    leaves_rough: bool,
     progress: &'a Progress,
+    began: Instant,
+}
+
+/// A part of the light, and the film that gathers it.
+struct Exposure {
+    part: Part,
+    film: Film,
+    /// How many samples each pixel takes in all, once that is decided.
+    limit: Option<Allocation>,
 }
 
 impl Rendering<'_> {
-    fn run(&self) -> Rendered {
-        let started = Instant::now();
+    fn run(&self, shown: Option<LightFilm<'_>>) -> Rendered {
         let samples = self.settings.samples.clone();
-        self.expect(self.pixels() * samples.len() as u64);
-        let mut film = self.settings.new_film(self.scene);
+        let new = |part: &Part| Exposure {
+            part: *part,
+            film: self.settings.new_film(self.scene),
+            limit: None,
+        };
+        let mut exposures: Vec<Exposure> = self.settings.parts().iter().map(new).collect();
         let mut tally = Tally::new(self.scene.bodies.len());
+        if let Some(counts) = &self.settings.counts {
+            for exposure in &mut exposures {
+                exposure.limit = Some(Allocation::given(counts.clone()));
+            }
+            self.expose(&mut exposures, &mut tally, samples.start..u32::MAX, None, None);
+            return Rendered::of(exposures, None, tally);
+        }
         let pilot_samples = self.pilot_samples();
-        if !self.settings.adaptive || pilot_samples == samples.len() as u32 {
-            self.expose(&mut film, &mut tally, samples, self.settings.time_budget, None);
-            return Rendered { film, tally };
+        if !self.settings.allots() || pilot_samples == samples.len() as u32 {
+            self.expose(&mut exposures, &mut tally, samples, self.settings.time_budget, None);
+            return Rendered::of(exposures, None, tally);
         }
         let rest = samples.start + pilot_samples;
-        self.expose(&mut film, &mut tally, samples.start..rest, None, None);
+        let eyes = Instant::now();
+        self.expose(&mut exposures, &mut tally, samples.start..rest, None, None);
+        let mut shown = shown;
         if !self.progress.is_cancelled() {
-            let allocation = self.allocate(&Pilot::of(&film), pilot_samples, started);
-            self.expect(allocation.total());
-            let range = rest..samples.start.saturating_add(allocation.most());
-            self.expose(&mut film, &mut tally, range, None, Some(&allocation));
+            let affordable = self.affordable(pilot_samples, eyes.elapsed());
+            let paths = self.allocate(&mut exposures, shown.as_mut(), affordable);
+            if let Some(shown) = &mut shown {
+                shown.begin_anew();
+                shown.walk(LightFilm::per_batch(paths), self.progress);
+            }
+            self.expose(&mut exposures, &mut tally, rest..u32::MAX, None, shown.as_ref());
         }
-        Rendered { film, tally }
+        Rendered::of(exposures, shown, tally)
     }
 
     /// How many samples of every pixel the first round has: a quarter of all where their number is
@@ -146,45 +208,92 @@ impl Rendering<'_> {
         }
     }
 
-    /// Allot samples, or time, as the first round says.
-    fn allocate(&self, pilot: &Pilot, pilot_samples: u32, started: Instant) -> Allocation {
-        let mut affordable = self.settings.samples.len() as f64;
-        if let Some(budget) = self.settings.time_budget {
-            let share = budget.as_secs_f64() / started.elapsed().as_secs_f64();
-            affordable = affordable.min(f64::from(pilot_samples) * share);
+    /// How many samples of every pixel can be had, if those of the first round took so long.
+    fn affordable(&self, pilot_samples: u32, took: Duration) -> f64 {
+        let most = self.settings.samples.len() as f64;
+        self.settings.time_budget.map_or(most, |budget| {
+            let left = budget.as_secs_f64() - self.began.elapsed().as_secs_f64();
+            let more = (left / took.as_secs_f64()).max(0.0);
+            most.min(f64::from(pilot_samples) * (1.0 + more))
+        })
+    }
+
+    /// Allot samples, or time, as the first round says; how many walks from lights there are to be.
+    fn allocate(
+        &self,
+        exposures: &mut [Exposure],
+        shown: Option<&mut LightFilm<'_>>,
+        affordable: f64,
+    ) -> f64 {
+        let films: Vec<&Film> = exposures.iter().map(|exposure| &exposure.film).collect();
+        let mut pilot = Pilot::of(&films);
+        if let Some(shown) = shown {
+            let segments = films.iter().flat_map(|film| &film.segments).sum::<u64>();
+            let mut more = LightFilm::FEWEST;
+            while shown.segments() < segments / 4 && !self.progress.is_cancelled() {
+                shown.walk(more, self.progress);
+                more = shown.paths();
+            }
+            pilot.share_with(shown.trial(&pilot.tone));
         }
-        pilot.allocate(affordable, self.settings.target_error)
+        let (allocations, paths) = pilot.allocate(affordable, self.settings.target_error);
+        for (exposure, allocation) in exposures.iter_mut().zip(allocations) {
+            exposure.limit = Some(allocation);
+        }
+        paths
     }
 
     fn pixels(&self) -> u64 {
         u64::from(self.settings.width) * u64::from(self.settings.height)
     }
 
-    fn expect(&self, samples: u64) {
-        self.progress.total.store(samples, Ordering::Relaxed);
-    }
-
-    /// Take samples of every pixel, as many of them as it is allotted or as the time allows.
+    /// Take samples of every pixel on all films, as many of them as are allotted or as the time allows.
     fn expose(
         &self,
-        film: &mut Film,
+        exposures: &mut [Exposure],
         tally: &mut Tally,
         samples: Range<u32>,
         time_budget: Option<Duration>,
-        limit: Option<&Allocation>,
+        shown: Option<&LightFilm<'_>>,
     ) {
         let started = Instant::now();
+        let most = |exposure: &Exposure| {
+            let limit = exposure.limit.as_ref();
+            limit.map_or(samples.end, |limit| {
+                self.settings.samples.start.saturating_add(limit.most())
+            })
+        };
+        let end = exposures.iter().map(most).max().unwrap_or(samples.end).min(samples.end);
+        let all = |exposure: &Exposure| {
+            let each = self.pixels() * u64::from(end.saturating_sub(samples.start));
+            exposure.limit.as_ref().map_or(each, Allocation::total)
+        };
+        self.progress.total.store(exposures.iter().map(all).sum(), Ordering::Relaxed);
         let (mut next, mut length) = (samples.start, 1);
-        let is_counted = limit.is_some() || !self.settings.adaptive && time_budget.is_none();
-        let at_end = |pixel| limit.map_or(samples.len() as u32, |counts| counts.of(pixel));
-        while next < samples.end && !self.progress.is_cancelled() {
-            let end = samples.end.min(next + length);
-            let Self { scene, settings, interior, progress } = *self;
-            let pass = Pass { scene, settings, interior, samples: next..end, limit, progress };
+        let is_counted = !self.settings.allots() && time_budget.is_none();
+        let each = is_counted.then_some(samples.len() as u32);
+        while next < end && !self.progress.is_cancelled() {
+            let until = end.min(next + length);
             let pass_started = Instant::now();
-            tally.add(&pass.run(film));
-            next = end;
-            self.progress.viewfinder.show(|| Snapshot::of(film, is_counted.then_some(at_end)));
+            let Self { scene, settings, interior, guide, leaves_rough, progress, .. } = *self;
+            for Exposure { part, film, limit } in &mut *exposures {
+                let (part, limit) = (*part, limit.as_ref());
+                let samples = next..until;
+                let pass = Pass {
+                    scene,
+                    settings,
+                    interior,
+                    part,
+                    samples,
+                    limit,
+                    leaves_rough,
+                    guide,
+                    progress,
+                };
+                tally.add(&pass.run(film));
+            }
+            next = until;
+            self.progress.viewfinder.show(|| self.snapshot(exposures, shown, each));
             length = self.progress.viewfinder.next_length(length, pass_started.elapsed());
             if let Some(budget) = time_budget {
                 let spent = started.elapsed().as_secs_f64();
@@ -197,5 +306,17 @@ impl Rendering<'_> {
                 length = length.min(affordable.div_ceil(2));
             }
         }
+    }
+}
+
+impl Rendered {
+    fn of(exposures: Vec<Exposure>, shown: Option<LightFilm<'_>>, mut tally: Tally) -> Self {
+        let layers = exposures[0].film.layers;
+        let mut films: Vec<Film> = exposures.into_iter().map(|exposure| exposure.film).collect();
+        if let Some(shown) = shown {
+            films.push(shown.film(layers));
+            tally.eye_rays += shown.segments();
+        }
+        Self { film: Film::sum(films), tally }
     }
 }

@@ -12,7 +12,7 @@ use super::Progress;
 use crate::film::{BandSums, Film, PixelSums};
 use crate::math::DVec2;
 use crate::scene::{Interior, Scene};
-use crate::transport::{Gathered, HallWalk, PathWalk, Tally};
+use crate::transport::{Eye, Gathered, Guide, HallWalk, Part, PathWalk, Tally};
 
 /// Some samples of every pixel.
 pub(super) struct Pass<'a> {
@@ -20,9 +20,15 @@ pub(super) struct Pass<'a> {
     pub settings: &'a RenderSettings,
     /// The bodies that the eye is in.
     pub interior: Interior,
+    /// Which of the light.
+    pub part: Part,
     pub samples: Range<u32>,
     /// How many samples each pixel takes in all, where that is not the same.
     pub limit: Option<&'a Allocation>,
+    /// Whether walks from lights show what they send through rough boundaries.
+    pub leaves_rough: bool,
+    /// Where light comes from, for walks that know.
+    pub guide: Option<&'a Guide>,
     pub progress: &'a Progress,
 }
 
@@ -138,8 +144,10 @@ impl Pass<'_> {
                 gathered.radiance =
                     HallWalk::radiance(scene, hall, wavelengths, sampler, tally, start);
             }
-            Method::Path(path) => {
-                PathWalk::gather(scene, path, wavelengths, sampler, tally, gathered, start);
+            Method::Path(path) | Method::Lit(path) => {
+                let (part, guide, leaves_rough) = (self.part, self.guide, self.leaves_rough);
+                let eye = Eye { gathered, part, guide, leaves_rough };
+                PathWalk::gather(scene, path, wavelengths, sampler, tally, eye, start);
             }
         }
         wavelengths

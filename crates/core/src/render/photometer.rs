@@ -12,13 +12,15 @@ use super::Progress;
 use crate::film::{GroupSums, Receivers};
 use crate::sampling::PixelSequence;
 use crate::scene::Scene;
-use crate::transport::{FluxError, Ledger, LightSource, LightWalk, Parted, PathSettings, Tally};
+use crate::transport::{
+    Carried, FluxError, Ledger, LightSource, LightWalk, Parted, PathSettings, Tally,
+};
 
 /// Independent repetitions of the measurement: their spread is the standard error.
 pub const BATCHES: usize = 32;
 
 /// Keeps the random numbers of walks from lights and from the eye apart.
-const FROM_LIGHTS: u64 = 0xA076_1D64_78BD_642F;
+pub(super) const FROM_LIGHTS: u64 = 0xA076_1D64_78BD_642F;
 
 /// How long a round of all batches should take: what is done is looked at, and kept, in between.
 const ROUND: Duration = Duration::from_millis(200);
@@ -190,13 +192,16 @@ impl Round<'_> {
             let sampler = PixelSequence::Sobol.sampler(self.seed, number as u64, path);
             let mut is_sound = true;
             let mut receive = |part: &Parted<'_>| {
+                let Carried::Left(ray) = part.what else {
+                    return;
+                };
                 if !part.flux.is_radiance() {
                     is_sound = false;
                     return;
                 }
                 let xyz = self.scene.tristimulus(part.flux, part.wavelengths);
                 let (flux, phase) = ((part.flux, xyz), (part.wavelengths, phases));
-                self.receivers.catch(&mut groups[part.group], part.ray, flux, phase);
+                self.receivers.catch(&mut groups[part.group], ray, flux, phase);
             };
             self.walk.walk(sampler, tally, ledgers, &mut receive);
             if !is_sound {

@@ -2,13 +2,14 @@
 //! [`RenderSettings`]: what is rendered, how, and how finely.
 
 use std::ops::Range;
+use std::sync::Arc;
 use std::time::Duration;
 
 use super::RenderError;
 use crate::film::Film;
 use crate::sampling::{PixelFilter, PixelSequence};
 use crate::scene::Scene;
-use crate::transport::{HallSettings, PathSettings};
+use crate::transport::{Guide, HallSettings, Part, PathSettings};
 
 /// How light is followed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,6 +18,9 @@ pub enum Method {
     Hall(HallSettings),
     /// Unbiased path transport.
     Path(PathSettings),
+    /// The same, for light that is small and behind optics: what is seen in mirrors and through glass
+    /// is exposed apart from the rest, whose walks know where light comes from.
+    Lit(PathSettings),
 }
 
 /// What is rendered, how, and how finely.
@@ -29,6 +33,9 @@ pub struct RenderSettings {
     /// Which samples of every pixel; where they are allotted, the first of them and as many as all
     /// pixels together may cost, on average.
     pub samples: Range<u32>,
+    /// How many samples each pixel takes, row by row, where the caller knows; with it, `samples` says
+    /// which is the first, and the settings below are not asked.
+    pub counts: Option<Vec<u32>>,
     /// Whether samples are allotted to pixels by their noise.
     pub adaptive: bool,
     /// The error that is enough, with `adaptive`: the root mean square over the pixels of the
@@ -44,6 +51,8 @@ pub struct RenderSettings {
     pub seed: u64,
     /// The method and how far it goes.
     pub method: Method,
+    /// Where light comes from, if that was learned before; `Lit` learns it else.
+    pub guide: Option<Arc<Guide>>,
     /// Spectral bands per lane on the film; 0 for none.
     pub bands_per_lane: usize,
     /// Whether each light group gets sums of its own.
@@ -64,16 +73,61 @@ impl RenderSettings {
     pub(super) fn check(&self) -> Result<(), RenderError> {
         let (asked, deepest) = match self.method {
             Method::Hall(hall) => (hall.max_depth, DEEPEST_HALL),
-            Method::Path(path) => (path.max_depth, DEEPEST),
+            Method::Path(path) | Method::Lit(path) => (path.max_depth, DEEPEST),
         };
         if asked > deepest {
             return Err(RenderError::TooDeep { deepest, asked });
         }
+        let pixels = self.width as usize * self.height as usize;
+        if let Some(counts) = self.counts.as_ref().filter(|counts| counts.len() != pixels) {
+            return Err(RenderError::Counts { pixels, counts: counts.len() });
+        }
         Ok(())
+    }
+
+    /// Whether samples are allotted by what a first round shows.
+    pub(super) fn allots(&self) -> bool {
+        self.adaptive && self.counts.is_none()
+    }
+
+    /// What is exposed by itself, each on a film of its own.
+    pub(super) fn parts(&self) -> &'static [Part] {
+        match self.method {
+            Method::Hall(_) | Method::Path(_) => &[Part::All],
+            Method::Lit(_) => &[Part::Specular, Part::Scattered],
+        }
     }
 
     pub(super) fn new_film(&self, scene: &Scene) -> Film {
         let layers = if self.layers { scene.groups } else { 0 };
         Film::new(self.width, self.height, self.bands_per_lane, layers)
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+
+    /// Settings of no account, but for the size and the filter.
+    pub fn of_size(width: u32, height: u32, filter: PixelFilter) -> RenderSettings {
+        let path = PathSettings { max_depth: 8, split_depth: 1, roulette_below: 0.1 };
+        RenderSettings {
+            width,
+            height,
+            samples: 0..1,
+            counts: None,
+            adaptive: false,
+            target_error: None,
+            time_budget: None,
+            sequence: PixelSequence::Sobol,
+            filter,
+            seed: 1,
+            method: Method::Lit(path),
+            guide: None,
+            bands_per_lane: 0,
+            layers: false,
+            threads: 1,
+            tile: 1,
+        }
     }
 }

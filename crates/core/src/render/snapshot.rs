@@ -5,7 +5,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-use crate::film::{Film, PixelSums};
+use super::light_film::LightFilm;
+use super::{Exposure, Rendering};
+use crate::film::Film;
 
 /// The most samples that a pixel takes before the next pixel has its turn.
 const LONGEST_PASS: u32 = 64;
@@ -39,36 +41,78 @@ pub struct Snapshot {
 pub struct Outlook {
     /// The share of the work that is done, by the segments that a sample of each pixel takes.
     pub done: f64,
-    /// What every pixel's standard error will be multiplied with.
+    /// What the standard error of every pixel's luminance will be multiplied with.
     pub shrinkage: Vec<f64>,
 }
 
+/// A part of a picture, and how many samples of it each pixel will have, where that is known.
+pub(super) struct PartInMaking<'a> {
+    pub film: &'a Film,
+    pub at_end: Option<Box<dyn Fn(usize) -> u32 + 'a>>,
+}
+
 impl Snapshot {
-    /// What `film` shows now; `at_end` tells how many samples a pixel will have.
-    pub fn of(film: &Film, at_end: Option<impl Fn(usize) -> u32>) -> Self {
-        Self {
-            width: film.width,
-            height: film.height,
-            xyz: film.pixels.iter().flat_map(PixelSums::mean).collect(),
-            standard_error: film.pixels.iter().flat_map(PixelSums::standard_error).collect(),
-            samples: film.pixels.iter().map(|pixel| u64::from(pixel.samples)).sum(),
-            outlook: at_end.map(|at_end| Outlook::of(film, at_end)),
+    /// What the sum of `parts` shows now.
+    fn of(parts: &[PartInMaking<'_>]) -> Self {
+        let film = parts[0].film;
+        let mut shown = Self { width: film.width, height: film.height, ..Self::default() };
+        let is_counted = parts.iter().all(|part| part.at_end.is_some());
+        let mut outlook = Outlook { done: 0.0, shrinkage: Vec::new() };
+        let (mut done, mut all) = (0.0, 0.0);
+        for at in 0..film.pixels.len() {
+            let (mut xyz, mut variance, mut at_end) = ([0.0; 3], [0.0; 3], 0.0);
+            for part in parts {
+                let pixel = &part.film.pixels[at];
+                let (mean, error) = (pixel.mean(), pixel.standard_error());
+                let samples = part.at_end.as_ref().map_or(pixel.samples, |at_end| at_end(at));
+                let share = f64::from(pixel.samples) / f64::from(samples.max(1));
+                let segments = part.film.segments[at] as f64;
+                xyz = [0, 1, 2].map(|i| xyz[i] + mean[i]);
+                variance = [0, 1, 2].map(|i| variance[i] + error[i] * error[i]);
+                at_end += error[1] * error[1] * share.min(1.0);
+                done += segments;
+                all += segments / share.clamp(f64::MIN_POSITIVE, 1.0);
+                shown.samples += u64::from(pixel.samples);
+            }
+            shown.xyz.extend(xyz);
+            shown.standard_error.extend(variance.map(f64::sqrt));
+            let is_known = variance[1] > 0.0 && variance[1].is_finite();
+            outlook.shrinkage.push(if is_known { (at_end / variance[1]).sqrt() } else { 1.0 });
         }
+        outlook.done = if all > 0.0 { done / all } else { 0.0 };
+        shown.outlook = is_counted.then_some(outlook);
+        shown
     }
 }
 
-impl Outlook {
-    fn of(film: &Film, at_end: impl Fn(usize) -> u32) -> Self {
-        let (mut done, mut all) = (0.0, 0.0);
-        let pixels = film.pixels.iter().zip(&film.segments).enumerate();
-        let shares = pixels.map(|(at, (pixel, &segments))| {
-            let share = f64::from(pixel.samples) / f64::from(at_end(at).max(1));
-            done += segments as f64;
-            all += segments as f64 / share.clamp(f64::MIN_POSITIVE, 1.0);
-            share.min(1.0).sqrt()
+impl Rendering<'_> {
+    /// The picture so far, of which every pixel has `each` samples at the end, unless its exposure says
+    /// how many. What walks from lights show is no part of it before they are `shown`; until then no
+    /// error of the picture is known.
+    pub(super) fn snapshot(
+        &self,
+        exposures: &[Exposure],
+        shown: Option<&LightFilm<'_>>,
+        each: Option<u32>,
+    ) -> Snapshot {
+        let of_lights = shown.map(|shown| shown.film(0));
+        let eyes = exposures.iter().map(|Exposure { film, limit, .. }| {
+            let counts = limit
+                .as_ref()
+                .map(|limit| Box::new(|at| limit.of(at)) as Box<dyn Fn(usize) -> u32>);
+            let even = || each.map(|each| Box::new(move |_| each) as Box<dyn Fn(usize) -> u32>);
+            PartInMaking { film, at_end: counts.or_else(even) }
         });
-        let shrinkage = shares.collect();
-        Self { done: if all > 0.0 { done / all } else { 0.0 }, shrinkage }
+        let lights = of_lights.iter().map(|film| PartInMaking {
+            film,
+            at_end: Some(Box::new(|at| film.pixels[at].samples)),
+        });
+        let mut snapshot = Snapshot::of(&eyes.chain(lights).collect::<Vec<_>>());
+        if self.leaves_rough && shown.is_none() {
+            snapshot.standard_error.fill(f64::INFINITY);
+            snapshot.outlook = None;
+        }
+        snapshot
     }
 }
 
@@ -154,7 +198,7 @@ mod tests {
         for value in [1.0, 3.0] {
             film.pixels[1].add([value, 2.0 * value, 0.0]);
         }
-        let shown = Snapshot::of(&film, None::<fn(usize) -> u32>);
+        let shown = Snapshot::of(&[PartInMaking { film: &film, at_end: None }]);
         assert_eq!((shown.width, shown.height, shown.samples), (2, 1, 2));
         assert_eq!(shown.xyz, [0.0, 0.0, 0.0, 2.0, 4.0, 0.0]);
         assert_eq!(shown.standard_error[..3], [f64::INFINITY; 3]);
@@ -163,17 +207,41 @@ mod tests {
         assert!(shown.outlook.is_none());
     }
 
-    #[test]
-    fn the_outlook_counts_work_in_segments_and_errors_as_one_over_root_n() {
+    /// A film of two pixels with the values 1 and 3, as often as said: the mean is 2.
+    fn ones_and_threes(times: usize, segments: [u64; 2]) -> Film {
         let mut film = Film::new(2, 1, 0, 0);
         for pixel in &mut film.pixels {
-            (0..4).for_each(|_| pixel.add([1.0; 3]));
+            (0..times).for_each(|_| [1.0, 3.0].iter().for_each(|value| pixel.add([*value; 3])));
         }
+        film.segments = segments.to_vec();
+        film
+    }
+
+    #[test]
+    fn the_outlook_counts_work_in_segments_and_errors_as_one_over_root_n() {
+        let film = ones_and_threes(2, [8, 80]);
         // A sample of the second pixel takes ten times the work, and it gets four times as many.
-        film.segments = vec![8, 80];
-        let shown = Snapshot::of(&film, Some(|pixel: usize| [4, 16][pixel]));
+        let at_end: Box<dyn Fn(usize) -> u32> = Box::new(|pixel| [4, 16][pixel]);
+        let shown = Snapshot::of(&[PartInMaking { film: &film, at_end: Some(at_end) }]);
         let outlook = shown.outlook.unwrap();
         assert_eq!(outlook.shrinkage, [1.0, 0.5]);
         assert!((outlook.done - 88.0 / (8.0 + 320.0)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn parts_add_up_and_so_do_the_squares_of_their_errors() {
+        let (one, other) = (ones_and_threes(1, [2, 2]), ones_and_threes(1, [2, 2]));
+        let counts =
+            |count: u32| -> Option<Box<dyn Fn(usize) -> u32>> { Some(Box::new(move |_| count)) };
+        let shown = Snapshot::of(&[
+            PartInMaking { film: &one, at_end: counts(2) },
+            PartInMaking { film: &other, at_end: counts(8) },
+        ]);
+        assert_eq!(shown.xyz[..3], [4.0; 3]);
+        assert!((shown.standard_error[0] - 2.0_f64.sqrt()).abs() < 1e-15);
+        // Of 1 + 1 the second becomes a quarter.
+        let outlook = shown.outlook.unwrap();
+        assert!((outlook.shrinkage[0] - (1.25_f64 / 2.0).sqrt()).abs() < 1e-15);
+        assert!((outlook.done - 8.0 / (4.0 + 16.0)).abs() < 1e-15);
     }
 }

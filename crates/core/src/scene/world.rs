@@ -137,6 +137,13 @@ impl Scene {
         &self.materials[self.bodies[body as usize].material]
     }
 
+    /// Whether a transparent body has a rough face.
+    pub fn has_rough_glass(&self) -> bool {
+        self.materials
+            .iter()
+            .any(|material| material.dielectric().is_some() && material.finish.is_rough())
+    }
+
     /// The share of the light that a surface, met from `interior`, sends back or on when it arrives
     /// against wi; 1 for a boundary of transparent media.
     pub fn albedo(

@@ -3,6 +3,7 @@
 
 mod flux;
 mod gathered;
+mod guide;
 mod hall;
 mod ledger;
 mod meeting;
@@ -12,7 +13,8 @@ mod tally;
 
 pub use flux::{Beam, FluxError, LightSource, LightWalk, Parted, RaySet, Shining};
 pub use gathered::Gathered;
+pub use guide::Guide;
 pub use hall::{HallSettings, HallWalk};
 pub use ledger::{Balance, Ledger};
-pub use path::{Leaving, PathSettings, PathWalk};
+pub use path::{Carried, Eye, Part, PathSettings, PathWalk, Screen};
 pub use tally::Tally;

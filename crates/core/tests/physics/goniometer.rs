@@ -147,7 +147,7 @@ pub fn seen_from(
             let projection = Projection::Orthographic { height };
             scene.camera = Camera::new(middle + way * 1e4, middle, up, projection).unwrap();
             let seed = u64::from(90 + round * eyes) + eye as u64;
-            let usual = Take { side: 16, samples, seed, path: USUAL }.settings();
+            let usual = Take { side: 16, seed, ..Take::of(samples, USUAL) }.settings();
             let settings = RenderSettings { bands_per_lane: 0, layers: false, tile: 64, ..usual };
             let film = render(scene, &settings, &Progress::default()).unwrap().film;
             for (at, sum) in sums.iter_mut().enumerate() {

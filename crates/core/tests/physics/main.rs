@@ -22,6 +22,8 @@ mod glass;
 #[cfg(test)]
 mod goniometer;
 #[cfg(test)]
+mod guided;
+#[cfg(test)]
 mod light_sources;
 #[cfg(test)]
 mod measure;

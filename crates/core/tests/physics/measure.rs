@@ -16,7 +16,7 @@ pub struct Take {
     pub side: u32,
     pub samples: u32,
     pub seed: u64,
-    pub path: PathSettings,
+    pub method: Method,
 }
 
 /// What the tracer does unless it is told otherwise.
@@ -37,7 +37,12 @@ pub const SINGLE: PathSettings =
 impl Take {
     /// 8 × 8 pixels of so many samples.
     pub fn of(samples: u32, path: PathSettings) -> Self {
-        Self { side: 8, samples, seed: 7, path }
+        Self { side: 8, samples, seed: 7, method: Method::Path(path) }
+    }
+
+    /// The same, by walks that know where light comes from.
+    pub fn lit(samples: u32, path: PathSettings) -> Self {
+        Self { method: Method::Lit(path), ..Self::of(samples, path) }
     }
 
     /// What `render` is asked for.
@@ -52,7 +57,9 @@ impl Take {
             sequence: PixelSequence::Sobol,
             filter: PixelFilter::Box,
             seed: self.seed,
-            method: Method::Path(self.path),
+            method: self.method,
+            counts: None,
+            guide: None,
             bands_per_lane: 1,
             layers: true,
             threads: 2,

@@ -17,7 +17,7 @@ use std::sync::Arc;
 use thiserror::Error;
 
 use super::ledger::Ledger;
-use super::path::{PathSettings, PathWalk};
+use super::path::{Carried, PathSettings, PathWalk, Screen};
 use super::tally::Tally;
 use crate::math::Ray;
 use crate::sampling::{Choice, PixelSampler};
@@ -153,10 +153,10 @@ impl LightSource {
     }
 }
 
-/// A part of a walk's flux that leaves the scene.
+/// A part of a walk's flux.
 pub struct Parted<'r> {
-    /// Along which ray.
-    pub ray: &'r Ray,
+    /// What became of it.
+    pub what: Carried<'r>,
     /// The light group that it is counted to.
     pub group: usize,
     /// On which wavelengths.
@@ -170,6 +170,8 @@ pub struct LightWalk<'a> {
     scene: &'a Scene,
     source: &'a LightSource,
     settings: PathSettings,
+    /// On which the scene's camera sees the light where it crosses rough boundaries.
+    screen: Option<Screen>,
     /// The flux, as the eye weighs it by X + Y + Z, of a usual walk: roulette goes by shares of it.
     usual: f64,
     luminous_flux: f64,
@@ -197,8 +199,14 @@ impl<'a> LightWalk<'a> {
         let usual = (x + y + z) / scale.iter().sum::<f64>();
         let sound = y.is_finite() && y > 0.0 && usual.is_finite() && usual > 0.0;
         sound
-            .then_some(Self { scene, source, settings, usual, luminous_flux: y })
+            .then_some(Self { scene, source, settings, screen: None, usual, luminous_flux: y })
             .ok_or(FluxError::NoFlux)
+    }
+
+    /// Show what the scene's camera sees of the light where it crosses rough boundaries.
+    #[must_use]
+    pub fn shown_on(self, screen: Screen) -> Self {
+        Self { screen: Some(screen), ..self }
     }
 
     /// The luminous flux of all groups in lm: the unit of the ledgers.
@@ -206,7 +214,7 @@ impl<'a> LightWalk<'a> {
         self.luminous_flux
     }
 
-    /// Walk once, and hand on what leaves the scene. The ledger of the walk's light group, of which
+    /// Walk once, and show where the light arrives and leaves. The ledger of the walk's light group, of which
     /// `ledgers` has one each, books luminous flux in units of [`luminous_flux`](Self::luminous_flux).
     pub fn walk(
         &self,
@@ -232,8 +240,8 @@ impl<'a> LightWalk<'a> {
             }
             Ok(interior) => {
                 let usual = self.usual;
-                let mut leaving = |ray: &Ray, left: SampledSpectrum| {
-                    receive(&Parted { ray, group, wavelengths, flux: left * usual });
+                let mut shown = |what: Carried<'_>, flux: SampledSpectrum| {
+                    receive(&Parted { what, group, wavelengths, flux: flux * usual });
                 };
                 let (settings, start) = (self.settings, (ray, interior));
                 let carried = (carried, booked);
@@ -243,7 +251,7 @@ impl<'a> LightWalk<'a> {
                     wavelengths,
                     sampler,
                     tally,
-                    &mut leaving,
+                    (&mut shown, self.screen),
                     start,
                     carried,
                 );

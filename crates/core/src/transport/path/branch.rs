@@ -17,10 +17,16 @@ pub(super) struct Branch {
     pub interior: Interior,
     /// Its random numbers.
     pub sampler: PixelSampler,
+    /// How far it has come, in mm, since it started or turned at random.
+    pub way: f64,
     /// How many surfaces and scatterings it has behind it.
     pub depth: u32,
     /// How many times its tree has been split above it.
     pub splits: u32,
+    /// Whether it has turned at random.
+    pub has_scattered: bool,
+    /// Whether what it meets of emitters is left to walks from lights.
+    pub is_left: bool,
     /// How it got its direction.
     pub came_by: CameBy,
     /// How much more light may come against `ray` than its throughput makes one expect: it was aimed
@@ -62,7 +68,19 @@ impl Branch {
     /// The branch that every other comes from.
     pub fn from_eye((ray, interior): (Ray, Interior), sampler: PixelSampler) -> Self {
         let (throughput, came_by) = (SampledSpectrum::ONE, CameBy::OneWay);
-        Self { ray, throughput, interior, sampler, depth: 0, splits: 0, came_by, promise: 1.0 }
+        Self {
+            ray,
+            throughput,
+            interior,
+            sampler,
+            way: 0.0,
+            depth: 0,
+            splits: 0,
+            has_scattered: false,
+            is_left: false,
+            came_by,
+            promise: 1.0,
+        }
     }
 
     /// Go on from a mirror or a smooth interface.

@@ -7,12 +7,15 @@
 //! straight way (next-event estimation); where both find the same light, they share it by the
 //! balance heuristic.
 
-use crate::math::{DVec3, Ray};
+use std::f64::consts::PI;
+
+use crate::math::{DVec2, DVec3, Ray};
 use crate::scene::BodyId;
 use crate::spectrum::SampledSpectrum;
+use crate::transport::guide::{Answered, Arrival};
 
 use super::branch::{Branch, CameBy};
-use super::purpose::Purpose;
+use super::purpose::{Carried, Part, Purpose, Screen};
 use super::vertex::Vertex;
 use super::{Meeting, PathWalk};
 
@@ -22,18 +25,36 @@ const MOST_SURFACES: usize = 256;
 /// How far, relative to its distance, a point of an emitter may seem to lie behind its own surface.
 const SAME_POINT: f64 = 1e-5;
 
-impl PathWalk<'_> {
+/// How often a direction is drawn towards learned light, where there is some.
+const GUIDED: f64 = 0.5;
+
+/// How often directions are drawn towards learned light, and towards a bright background.
+struct Aims<'a> {
+    background: f64,
+    guided: f64,
+    light: Option<Answered<'a>>,
+}
+
+impl<'a> Aims<'a> {
+    /// What to draw from if a uniform `technique`, beyond the background's share, is for learned light.
+    fn guide(&self, technique: f64) -> Option<&Answered<'a>> {
+        self.light.as_ref().filter(|_| technique < self.background + self.guided)
+    }
+}
+
+impl<'a> PathWalk<'a> {
     /// Add what the background sends against a branch that leaves the scene, or hand on what it
     /// carries.
     pub(super) fn leave(&mut self, branch: &Branch) {
         let (scene, wavelengths) = (self.scene, self.wavelengths);
         match &mut self.purpose {
-            Purpose::Eye(gathered) => {
+            Purpose::Eye(eye) if eye.part == Part::Scattered && !branch.has_scattered => {}
+            Purpose::Eye(eye) => {
                 scene.background.arriving(&branch.ray, wavelengths, |group, radiance| {
-                    gathered.add(scene, wavelengths, group, branch.throughput * radiance);
+                    eye.gathered.add(scene, wavelengths, group, branch.throughput * radiance);
                 });
             }
-            Purpose::Light(leaving) => leaving(&branch.ray, branch.throughput),
+            Purpose::Light(receive, _) => receive(Carried::Left(&branch.ray), branch.throughput),
         }
     }
 
@@ -42,7 +63,7 @@ impl PathWalk<'_> {
         let Some(number) = self.scene.emitters.of_body(meeting.hit.body) else {
             return;
         };
-        if !self.purpose.looks_for_light() {
+        if !self.purpose.counts(branch) {
             return;
         }
         let emitters = &self.scene.emitters;
@@ -65,20 +86,32 @@ impl PathWalk<'_> {
     }
 
     fn add_light(&mut self, group: usize, arriving: SampledSpectrum) {
-        if let Purpose::Eye(gathered) = &mut self.purpose {
-            gathered.add(self.scene, self.wavelengths, group, arriving);
+        if let Purpose::Eye(eye) = &mut self.purpose {
+            eye.gathered.add(self.scene, self.wavelengths, group, arriving);
         }
     }
 
     /// Turn a branch at a vertex, if it goes on: ∫ f L |cos θ| dω by one direction and one look at
     /// the emitters.
     pub(super) fn scatter(&mut self, branch: &mut Branch, vertex: &Vertex<'_>) -> bool {
+        if !self.purpose.scatters() {
+            return false;
+        }
         let lanes = self.lanes(branch.throughput);
-        let share = self.aim_share(vertex);
-        self.see_emitters(branch, vertex, &lanes, share);
+        self.show_arrival(branch, vertex);
+        if branch.depth == 0 && vertex.is_boundary && self.purpose.leaves_rough() {
+            branch.is_left = true;
+        }
+        if vertex.is_boundary {
+            self.show(branch, vertex);
+        }
+        let aims = self.aims(vertex, &lanes);
+        self.see_emitters(branch, vertex, &lanes, &aims);
         let [technique, u, v, w] = branch.sampler.next_4d();
-        let drawn = if technique < share {
+        let drawn = if technique < aims.background {
             self.scene.background.aim(vertex.position, [u, v, w])
+        } else if let Some(light) = aims.guide(technique) {
+            Some(light.sample([u, v, w]))
         } else {
             vertex.sample(&lanes, [u, v, w])
         };
@@ -86,9 +119,11 @@ impl PathWalk<'_> {
             return false;
         };
         let own = vertex.pdf(wo, &lanes);
-        let pdf = self.mixed(vertex, wo, own, share);
+        let pdf = self.mixed(vertex, wo, own, &aims);
+        branch.way = 0.0;
+        branch.has_scattered = true;
         branch.came_by = CameBy::Scattering { from: vertex.position, pdf };
-        branch.promise = (pdf / own).max(1.0);
+        branch.promise = (pdf / own).min(pdf * 4.0 * PI).max(1.0);
         branch.throughput *= vertex.answer(wo) * (1.0 / pdf);
         if !vertex.agrees(wo) {
             wo = vertex.put_right(wo);
@@ -100,24 +135,69 @@ impl PathWalk<'_> {
         pdf > 0.0
     }
 
-    /// How often `scatter` draws a direction towards what is bright in the background.
-    fn aim_share(&self, vertex: &Vertex<'_>) -> f64 {
-        if self.purpose.looks_for_light() {
-            self.scene.background.aim_share(vertex.position)
-        } else {
-            0.0
+    /// Show whoever follows a walk from a light that it arrives at a vertex.
+    fn show_arrival(&mut self, branch: &Branch, vertex: &Vertex<'_>) {
+        let weight = self.weight(branch.throughput);
+        if let Purpose::Light(receive, _) = &mut self.purpose {
+            let (position, direction, way) = (vertex.position, -branch.ray.direction, branch.way);
+            let arrival = Arrival { position, direction, way, weight };
+            receive(Carried::Arrived(arrival), branch.throughput);
         }
     }
 
-    /// The density of the directions that `scatter` draws, per steradian; `own` is the vertex's own,
-    /// and `share` the `aim_share` there.
-    fn mixed(&self, vertex: &Vertex<'_>, wo: DVec3, own: f64, share: f64) -> f64 {
-        if share > 0.0 {
-            let ray = Ray::endless(vertex.position, wo);
-            (1.0 - share) * own + share * self.scene.background.aim_pdf(&ray)
-        } else {
-            own
+    /// Show what the camera sees of a walk from a light at a vertex, along a straight way.
+    fn show(&mut self, branch: &mut Branch, vertex: &Vertex<'_>) {
+        let Some(Screen { width, height }) = self.purpose.screen() else {
+            return;
+        };
+        let [u, v, ..] = branch.sampler.next_4d();
+        let camera = &self.scene.camera;
+        let Some(seen) = camera.see(vertex.position, DVec2::new(u, v), width, height) else {
+            return;
+        };
+        let outside = -2.0..f64::from(width) + 2.0;
+        if !outside.contains(&seen.place.x) || !vertex.agrees(seen.direction) {
+            return;
         }
+        let answer = vertex.answer(seen.direction);
+        if answer.max() <= 0.0 {
+            return;
+        }
+        let way = self.straight_way(vertex, seen.direction, seen.distance, None);
+        if let (Some((transmitted, _)), Purpose::Light(receive, _)) = (way, &mut self.purpose) {
+            let shown = branch.throughput * answer * transmitted * seen.per_intensity;
+            receive(Carried::Shown(seen.place), shown);
+        }
+    }
+
+    /// How `scatter` aims.
+    fn aims(&self, vertex: &Vertex<'_>, lanes: &SampledSpectrum) -> Aims<'a> {
+        if !self.purpose.looks_for_light() {
+            return Aims { background: 0.0, guided: 0.0, light: None };
+        }
+        let background = self.scene.background.aim_share(vertex.position);
+        let region = self.purpose.guide().and_then(|guide| guide.at(vertex.position));
+        let Some(region) = region else {
+            return Aims { background, guided: 0.0, light: None };
+        };
+        let light = region.answered(vertex.position, |wo| vertex.pdf(wo, lanes));
+        // Where both are sure of a half, each of the three ways of drawing has a third.
+        let [background, guided] =
+            [(background, GUIDED), (GUIDED, background)].map(|(a, b)| a * (1.0 - b * 2.0 / 3.0));
+        Aims { background, guided, light: Some(light) }
+    }
+
+    /// The density of the directions that `scatter` draws, per steradian; `own` is the vertex's own.
+    fn mixed(&self, vertex: &Vertex<'_>, wo: DVec3, own: f64, aims: &Aims<'_>) -> f64 {
+        let mut pdf = own;
+        if let Some(light) = &aims.light {
+            pdf += aims.guided * (light.pdf(wo) - own);
+        }
+        if aims.background > 0.0 {
+            let ray = Ray::endless(vertex.position, wo);
+            pdf += aims.background * (self.scene.background.aim_pdf(&ray) - own);
+        }
+        pdf
     }
 
     /// Add what one point of the emitters sends straight to a vertex.
@@ -126,11 +206,11 @@ impl PathWalk<'_> {
         branch: &mut Branch,
         vertex: &Vertex<'_>,
         lanes: &SampledSpectrum,
-        share: f64,
+        aims: &Aims<'_>,
     ) {
         let emitters = &self.scene.emitters;
         let is_looked_for = self.purpose.looks_for_light() && !emitters.is_empty();
-        if !is_looked_for || branch.depth >= self.settings.max_depth {
+        if !is_looked_for || branch.is_left || branch.depth >= self.settings.max_depth {
             return;
         }
         let [u, v, w, _] = branch.sampler.next_4d();
@@ -143,25 +223,26 @@ impl PathWalk<'_> {
         if emitted.max() <= 0.0 || answer.max() <= 0.0 || !vertex.agrees(seen.direction) {
             return;
         }
-        let way = self.straight_way(vertex, seen.direction, seen.distance, emitter.body);
+        let way = self.straight_way(vertex, seen.direction, seen.distance, Some(emitter.body));
         let Some((transmitted, index)) = way else {
             return;
         };
         let emitted = if emitter.per_n2 { emitted / (index * index) } else { emitted };
         let own = vertex.pdf(seen.direction, lanes);
-        let other = self.mixed(vertex, seen.direction, own, share);
+        let other = self.mixed(vertex, seen.direction, own, aims);
         let arriving = branch.throughput * answer * transmitted * emitted;
         self.add_light(emitter.group, arriving * (1.0 / (seen.pdf + other)));
     }
 
-    /// The transmittance of the straight way to a point of an emitter, and the index of the medium
-    /// there; none where anything is in the way but boundaries that are none to light.
+    /// The transmittance of the straight way to a point, on the surface of the body `end` or on none, and
+    /// the index of the medium there; nothing where anything is in the way but boundaries that are none
+    /// to light.
     fn straight_way(
         &mut self,
         vertex: &Vertex<'_>,
         direction: DVec3,
         distance: f64,
-        emitter: BodyId,
+        end: Option<BodyId>,
     ) -> Option<(SampledSpectrum, SampledSpectrum)> {
         let (origin, mut interior) = vertex.leave_along(direction);
         let mut left = distance;
@@ -169,7 +250,7 @@ impl PathWalk<'_> {
         let mut share = SampledSpectrum::ONE;
         for _ in 0..MOST_SURFACES {
             self.tally.shadow_rays += 1;
-            ray.t_max = left * (1.0 + 2.0 * SAME_POINT);
+            ray.t_max = if end.is_some() { left * (1.0 + 2.0 * SAME_POINT) } else { left };
             let place = self.scene.first_place(&ray);
             let length = place.as_ref().map_or(left, |place| place.hit.point.t);
             if let Some(medium) = self.scene.medium(&interior) {
@@ -184,7 +265,7 @@ impl PathWalk<'_> {
             };
             let hit = place.hit;
             if self.scene.material_of(hit.body).dielectric().is_none() {
-                let reached = hit.body == emitter && length >= left * (1.0 - SAME_POINT);
+                let reached = end == Some(hit.body) && length >= left * (1.0 - SAME_POINT);
                 return reached.then(|| (share, self.index(&interior)));
             }
             let beyond = interior.through(place.faces(), |_, _| {});

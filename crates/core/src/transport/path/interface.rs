@@ -92,7 +92,7 @@ impl PathWalk<'_> {
             let vertex = Vertex::on_surface(meeting, bsdf, branch.interior);
             return Ways::one(self.scatter(branch, &vertex));
         };
-        if !bsdf.scatters() {
+        if !bsdf.scatters() || !self.purpose.scatters() {
             mirror(branch, meeting, &mirrored);
             return Ways::one(true);
         }

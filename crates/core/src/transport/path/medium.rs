@@ -11,6 +11,8 @@ use super::{pick, PathWalk};
 pub(super) struct Scattered {
     /// The place.
     pub position: DVec3,
+    /// How far it is, in mm.
+    pub distance: f64,
     /// g of the phase function.
     pub anisotropy: f64,
 }
@@ -41,7 +43,8 @@ impl PathWalk<'_> {
                 let density = coefficient * coefficient.transmittance(distance);
                 branch.throughput *= density * (1.0 / lanes.dot(density));
                 let position = branch.ray.at(distance);
-                scattered = Some(Scattered { position, anisotropy: scattering.anisotropy });
+                scattered =
+                    Some(Scattered { position, distance, anisotropy: scattering.anisotropy });
             } else {
                 let through = coefficient.transmittance(distance);
                 branch.throughput *= through * (1.0 / lanes.dot(through));

@@ -14,7 +14,7 @@
 //! A walk from a light goes the same ways by the same rules, and carries flux: a surface's answer
 //! keeps energy, and n(wi)² f(wi, wo) = n(wo)² f(wo, wi), so that the share of the radiance from wo
 //! that goes to wi is also the share of the flux from wi that goes to wo. What differs is where it
-//! starts, and that it looks for nothing: what leaves the scene is handed on ([`Purpose`]).
+//! starts, and that it looks for nothing: what leaves the scene, and where it arrives, is handed on ([`Purpose`]).
 //!
 //! Source: J. Kajiya, "The Rendering Equation", SIGGRAPH 1986; E. Veach, *Robust Monte Carlo
 //! Methods for Light Transport Simulation*, 1997 (multiple importance sampling, ch. 9; roulette and
@@ -32,7 +32,6 @@ use crate::sampling::PixelSampler;
 use crate::scene::{BodyId, Face, Interior, LostRay, Scene};
 use crate::spectrum::{SampledSpectrum, SampledWavelengths};
 
-use super::gathered::Gathered;
 use super::meeting::Meeting;
 use super::tally::Tally;
 use branch::{Branch, Ways};
@@ -40,7 +39,7 @@ use medium::Scattered;
 use purpose::Purpose;
 use vertex::Vertex;
 
-pub use purpose::Leaving;
+pub use purpose::{Carried, Eye, Part, Receive, Screen};
 
 /// How the walks are spent. None of these changes what the picture tends to, but `max_depth`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,16 +88,16 @@ impl<'a> PathWalk<'a> {
         wavelengths: SampledWavelengths,
         sampler: PixelSampler,
         tally: &'a mut Tally,
-        gathered: &'a mut Gathered,
+        eye: Eye<'a>,
         start: (Ray, Interior),
     ) {
         let visibility = scene.visibility.at(wavelengths);
         let (booked, pending) = (visibility, vec![Branch::from_eye(start, sampler)]);
-        let purpose = Purpose::Eye(gathered);
+        let purpose = Purpose::Eye(eye);
         Self { scene, settings, wavelengths, visibility, booked, tally, purpose, pending }.run();
     }
 
-    /// Carry `flux` from where `start` begins, and hand on what leaves the scene. The weights of
+    /// Carry `flux` from where `start` begins, and show where it arrives and leaves. The weights of
     /// roulette are those of `flux`; `booked` is how much of each lane the ledger books.
     #[expect(clippy::too_many_arguments, reason = "as the walk from the eye, and what it carries")]
     pub fn carry(
@@ -107,13 +106,13 @@ impl<'a> PathWalk<'a> {
         wavelengths: SampledWavelengths,
         sampler: PixelSampler,
         tally: &'a mut Tally,
-        leaving: &'a mut Leaving<'a>,
+        (receive, screen): (&'a mut Receive<'a>, Option<Screen>),
         start: (Ray, Interior),
         (flux, booked): (SampledSpectrum, SampledSpectrum),
     ) {
         let visibility = scene.visibility.at(wavelengths);
         let pending = vec![Branch { throughput: flux, ..Branch::from_eye(start, sampler) }];
-        let purpose = Purpose::Light(leaving);
+        let purpose = Purpose::Light(receive, screen);
         Self { scene, settings, wavelengths, visibility, booked, tally, purpose, pending }.run();
     }
 
@@ -160,11 +159,14 @@ impl<'a> PathWalk<'a> {
             self.tally.eye_rays += 1;
             let place = self.scene.first_place(&branch.ray);
             let length = place.as_ref().map_or(f64::INFINITY, |place| place.hit.point.t);
+            let before = branch.way;
+            branch.way += length;
             if let Some(body) = branch.interior.filling(&self.scene.bodies) {
                 if place.is_none() {
                     return self.lose(branch, body, LostRay::EndedInside);
                 }
                 if let Some(at) = self.pass_through(branch, body, length) {
+                    branch.way = before + at.distance;
                     return Event::Scattering(at);
                 }
             }

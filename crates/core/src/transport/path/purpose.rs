@@ -1,24 +1,108 @@
 // SPDX-License-Identifier: Apache-2.0 OR MIT
 //! [`Purpose`]: what a walk is for.
 
-use crate::math::Ray;
+use super::branch::Branch;
+use crate::math::{DVec2, Ray};
 use crate::spectrum::SampledSpectrum;
+use crate::transport::guide::{Arrival, Guide};
 use crate::transport::Gathered;
 
-/// Takes the flux that leaves a scene along a ray.
-pub type Leaving<'a> = dyn FnMut(&Ray, SampledSpectrum) + 'a;
+/// What a walk from a light shows of the flux that it carries.
+pub enum Carried<'r> {
+    /// It leaves the scene along a ray.
+    Left(&'r Ray),
+    /// It arrives where the walk turns at random.
+    Arrived(Arrival),
+    /// A camera sees it at this place of its image, in pixels: the radiance there over this density.
+    Shown(DVec2),
+}
+
+/// Takes what a walk from a light shows.
+pub type Receive<'a> = dyn FnMut(Carried<'_>, SampledSpectrum) + 'a;
+
+/// Which of the light that arrives at an eye walks bring. Both parts together are all of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Part {
+    /// All of it.
+    #[default]
+    All,
+    /// What is seen in mirrors and through smooth glass alone. Walks end where they would turn at
+    /// random: they are short, and the light they find is sharp.
+    Specular,
+    /// The rest: what has been turned at random.
+    Scattered,
+}
+
+/// What an eye does with the light that walks find for it, and what it knows of where that is.
+pub struct Eye<'a> {
+    /// What has been found.
+    pub gathered: &'a mut Gathered,
+    /// What is looked for.
+    pub part: Part,
+    /// Where light comes from.
+    pub guide: Option<&'a Guide>,
+    /// Whether walks from lights show what emitters send through rough boundaries that are the first
+    /// thing the eye sees: then it is left to them.
+    pub leaves_rough: bool,
+}
+
+/// The image on which a walk from a light shows what a camera sees of it, in pixels.
+#[derive(Clone, Copy, Debug)]
+pub struct Screen {
+    /// Its width.
+    pub width: u32,
+    /// Its height.
+    pub height: u32,
+}
 
 /// What a walk is for.
 pub(super) enum Purpose<'a> {
     /// To bring an eye the light that arrives there: emissions and the background are looked for.
-    Eye(&'a mut Gathered),
+    Eye(Eye<'a>),
     /// To carry flux from a light until it leaves the scene.
-    Light(&'a mut Leaving<'a>),
+    Light(&'a mut Receive<'a>, Option<Screen>),
 }
 
-impl Purpose<'_> {
+impl<'a> Purpose<'a> {
     /// Whether walks look for emissions and the background.
     pub fn looks_for_light(&self) -> bool {
         matches!(self, Self::Eye(_))
+    }
+
+    /// Whether walks go on where they turn at random.
+    pub fn scatters(&self) -> bool {
+        !matches!(self, Self::Eye(Eye { part: Part::Specular, .. }))
+    }
+
+    /// Whether light of an emitter counts that a branch meets.
+    pub fn counts(&self, branch: &Branch) -> bool {
+        match self {
+            Self::Eye(eye) => match eye.part {
+                Part::All | Part::Specular => !branch.is_left,
+                Part::Scattered => branch.has_scattered && !branch.is_left,
+            },
+            Self::Light(..) => false,
+        }
+    }
+
+    /// Whether a walk's light at a rough boundary, the first thing seen, is left to walks from lights.
+    pub fn leaves_rough(&self) -> bool {
+        matches!(self, Self::Eye(Eye { leaves_rough: true, .. }))
+    }
+
+    /// The image on which a walk from a light shows itself.
+    pub fn screen(&self) -> Option<Screen> {
+        match self {
+            Self::Eye(_) => None,
+            Self::Light(_, screen) => *screen,
+        }
+    }
+
+    /// Where light comes from, as far as that matters and is known.
+    pub fn guide(&self) -> Option<&'a Guide> {
+        match self {
+            Self::Eye(eye) => eye.guide,
+            Self::Light(..) => None,
+        }
     }
 }

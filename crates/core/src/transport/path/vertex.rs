@@ -15,6 +15,8 @@ pub(super) struct Vertex<'a> {
     pub position: DVec3,
     /// The bodies on the side that the branch comes from.
     pub near: Interior,
+    /// Whether it lies between two transparent media.
+    pub is_boundary: bool,
     place: Place<'a>,
 }
 
@@ -43,7 +45,7 @@ impl<'a> Vertex<'a> {
     #[expect(clippy::large_types_passed_by_value, reason = "moved into the vertex")]
     #[inline]
     pub fn on_surface(meeting: &Meeting, bsdf: Bsdf<'a>, near: Interior) -> Self {
-        Self::on_interface(meeting, bsdf, near, near)
+        Self { is_boundary: false, ..Self::on_interface(meeting, bsdf, near, near) }
     }
 
     /// A vertex on a rough boundary between the media of `near` and `far`.
@@ -55,12 +57,12 @@ impl<'a> Vertex<'a> {
         let wi = frame.transpose() * meeting.wi;
         let true_normal = point.normal * meeting.side();
         let place = Place::Surface { point, true_normal, frame, wi, bsdf, far };
-        Self { position: point.position, near, place }
+        Self { position: point.position, near, is_boundary: true, place }
     }
 
     /// A vertex inside a scattering body.
     pub fn in_body(position: DVec3, wi: DVec3, anisotropy: f64, near: Interior) -> Self {
-        Self { position, near, place: Place::Body { wi, anisotropy } }
+        Self { position, near, is_boundary: false, place: Place::Body { wi, anisotropy } }
     }
 
     /// `wi` of a meeting in the frame of its shading normal.

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0 OR MIT
+//! Walks that learned where light comes from: the same light, found more often.
+
+use std::f64::consts::PI;
+
+use lamplit_core::film::Film;
+use lamplit_core::math::DVec3;
+use lamplit_core::matter::Optics;
+use lamplit_core::render::{learn, render, Method, Progress, RenderSettings};
+use lamplit_core::sampling::PixelFilter;
+use lamplit_core::scene::{Camera, Projection, Scene, Strength};
+
+use crate::common::*;
+
+/// A small ball of light in the middle of a ball of glass over a matt floor, seen 30 mm beside it.
+fn bulb(flux: f64, index: f64, reflectance: f64) -> Scene {
+    let mut world = World::dark();
+    let lamp = world.add(matt(0.0), ball(DVec3::ZERO, 0.1));
+    world.shine(lamp, Strength::Flux(flat(flux)), 1);
+    world.add(glass(index), ball(DVec3::ZERO, 10.0));
+    world.add(matt(reflectance), plate(-51.0, -50.0));
+    let at = DVec3::new(30.0, -50.0, 0.0);
+    let eye = DVec3::new(80.0, 40.0, 30.0);
+    world.along(at + eye, -eye)
+}
+
+#[test]
+fn a_floor_under_a_bulb_is_as_bright_as_its_closed_form() {
+    // All light crosses the glass along its normal. What the floor sends back to itself by way of the
+    // bulb, which fills 1 % of its sky and reflects a tenth, is less than 1e-4.
+    let (flux, n, rho) = (2.0, 1.5, 0.1);
+    let r: f64 = ((n - 1.0) / (n + 1.0_f64)).powi(2);
+    let d2: f64 = 50.0 * 50.0 + 30.0 * 30.0;
+    let illuminance = flux / (4.0 * PI) * (1.0 - r) / (d2 * 1e-6) * (50.0 / d2.sqrt());
+    let expected = rho * illuminance / PI;
+    let scene = bulb(flux, n, rho);
+    let guided = Take::lit(1 << 10, USUAL).luminance(&scene);
+    guided.is(expected, 3e-3);
+    let blind = Take::of(1 << 10, USUAL).luminance(&scene);
+    assert!(blind.sigma > 20.0 * guided.sigma, "{blind:?} {guided:?}");
+}
+
+#[test]
+fn what_was_learned_of_another_scene_changes_no_expectation() {
+    // The right answer by a guide that knows a lamp elsewhere: under the floor's other end.
+    let mut world = World::dark();
+    let lamp = world.add(matt(0.0), disc(DVec3::new(-200.0, 60.0, 80.0), -DVec3::Y, 4.0));
+    world.shine(lamp, Strength::Flux(flat(3.0)), 1);
+    world.add(matt(0.5), plate(-51.0, -50.0));
+    let elsewhere = world.along(DVec3::Y, -DVec3::Y);
+    let guide = learn(&elsewhere, USUAL, 3, 2).unwrap();
+
+    let mut world = World::dark();
+    let lamp = world.add(matt(0.3), ball(DVec3::new(0.0, -20.0, 0.0), 8.0));
+    world.shine(lamp, Strength::Flux(flat(2.0)), 1);
+    world.add(
+        body(by_lane(|lane| 1.4 + 0.01 * lane as f64), flat(0.01), None),
+        ball(DVec3::new(0.0, -18.0, 0.0), 20.0),
+    );
+    let metal = Optics::Conductor { n: flat(0.9), k: flat(4.0), factor: 1.0, lacquer: None };
+    world.add_rough(metal, 0.3, plate(-51.0, -50.0));
+    let at = DVec3::new(30.0, -50.0, 0.0);
+    let eye = DVec3::new(50.0, 60.0, 10.0);
+    let scene = world.along(at + eye, -eye);
+    let expected = Take::of(1 << 13, USUAL).luminance(&scene);
+    let take = Take::lit(1 << 13, USUAL);
+    let misled = |seed| {
+        let guide = Some(std::sync::Arc::new(guide.clone()));
+        let settings = RenderSettings { guide, seed, ..take.settings() };
+        let film = render(&scene, &settings, &Progress::default()).unwrap().film;
+        let values: Vec<f64> = film.pixels.iter().map(|pixel| pixel.mean()[1]).collect();
+        Estimate::of(values.iter())
+    };
+    let got = misled(11);
+    let sigma = got.sigma.hypot(expected.sigma);
+    assert!((got.mean - expected.mean).abs() < 3.0 * sigma, "{got:?} {expected:?}");
+    assert!(sigma < 0.03 * expected.mean, "{sigma} {expected:?}");
+}
+
+#[test]
+fn what_is_learned_does_not_depend_on_threads() {
+    let scene = bulb(1.0, 1.5, 0.5);
+    let pictures = [1, 2, 5].map(|threads| {
+        let settings = RenderSettings { threads, ..Take::lit(16, USUAL).settings() };
+        render(&scene, &settings, &Progress::default()).unwrap().film.pixels
+    });
+    assert!(pictures[0].iter().any(|pixel| pixel.xyz[1] > 0.0));
+    assert_eq!(pictures[0], pictures[1]);
+    assert_eq!(pictures[0], pictures[2]);
+}
+
+/// Two lamps behind a frosted, dyed pane and before a matt wall, over a 24 × 16 picture.
+fn frosted(projection: Projection) -> Scene {
+    let mut world = World::dark();
+    for (x, group) in [(-5.0, 1), (6.0, 2)] {
+        let lamp = world.add(matt(0.2), disc(DVec3::new(x, 0.0, 0.0), DVec3::Y, 0.8));
+        world.shine(lamp, Strength::Flux(by_lane(|lane| 0.2 + 0.15 * lane as f64)), group);
+    }
+    world.add(matt(0.6), cuboid(DVec3::new(-16.0, -3.0, -12.0), DVec3::new(16.0, -1.0, 12.0)));
+    let dye = by_lane(|lane| 0.1 - 0.005 * lane as f64);
+    let pane = cuboid(DVec3::new(-12.0, 6.0, -8.0), DVec3::new(12.0, 8.0, 8.0));
+    world.add_rough(body(by_lane(|lane| 1.5 - 0.004 * lane as f64), dye, None), 0.3, pane);
+    let eye = DVec3::new(20.0, 70.0, 15.0);
+    world.seen_by(Camera::new(eye, DVec3::new(0.0, 4.0, 0.0), DVec3::Z, projection).unwrap())
+}
+
+#[test]
+fn light_shown_from_the_lamps_and_light_found_from_the_eye_make_the_picture_that_the_eye_finds() {
+    for projection in [
+        Projection::Pinhole { field_of_view_deg: 24.0 },
+        Projection::ThinLens { field_of_view_deg: 24.0, aperture: 9.0, focus: 68.0 },
+        Projection::Orthographic { height: 30.0 },
+    ] {
+        let scene = frosted(projection);
+        let picture = |method: Method, adaptive: bool, samples: u32| {
+            let settings = RenderSettings {
+                width: 24,
+                height: 16,
+                samples: 0..samples,
+                method,
+                adaptive,
+                filter: PixelFilter::Gaussian,
+                bands_per_lane: 0,
+                ..Take::of(1, USUAL).settings()
+            };
+            render(&scene, &settings, &Progress::default()).unwrap().film
+        };
+        let shown = picture(Method::Lit(USUAL), true, 96);
+        let found = picture(Method::Lit(USUAL), false, 256);
+        // By blocks of 4 × 4 pixels and light group.
+        let block = |film: &Film, at: usize, group: usize| {
+            let (column, row) = (at % 6 * 4, at / 6 * 4);
+            let pixels = (0..16).map(|i| (row + i / 4) * 24 + column + i % 4);
+            let sums: Vec<_> =
+                pixels.map(|pixel| film.layer_sums[pixel * film.layers + group]).collect();
+            let mean = sums.iter().map(|sums| sums.mean()[1]).sum::<f64>();
+            let variance = sums.iter().map(|sums| sums.standard_error()[1].powi(2)).sum::<f64>();
+            (mean, variance)
+        };
+        let (mut squares, mut number) = (0.0, 0.0);
+        for group in [1, 2] {
+            for at in 0..24 {
+                let [(a, va), (b, vb)] = [&shown, &found].map(|film| block(film, at, group));
+                let z = (a - b) / (va + vb).sqrt().max(1e-12);
+                assert!(z.abs() < 5.0, "{projection:?} {group} {at}: {a} {b} {z}");
+                squares += z * z;
+                number += 1.0;
+            }
+        }
+        // Neighbouring pixels share splats, so that σ of a block is a little too small.
+        assert!(squares / number < 2.5, "{projection:?}: {}", squares / number);
+        let total = |film: &Film| film.pixels.iter().map(|pixel| pixel.mean()[1]).sum::<f64>();
+        assert!((total(&shown) / total(&found) - 1.0).abs() < 0.03);
+    }
+}
