@@ -116,7 +116,7 @@ def test_progress_over_frames_tells_which_and_when_all_are_done(clock: list[floa
     first, second = log.getvalue().splitlines()
     assert first.startswith("Rendering: 37 % after 10.0 s, frame 2 of 4, 8 of 16 samples per pixel")
     assert first.endswith("about 16.7 s left")
-    assert second.startswith("Rendering: 75 % after 20.0 s, frame 4 of 4, 0 of 16 samples")
+    assert second.startswith("Rendering: 75 % after 20.0 s, frame 4 of 4, no sample yet")
     assert second.endswith("about 6.7 s left")
 
 
@@ -162,11 +162,21 @@ def test_an_error_that_is_not_known_yet_is_not_told(clock: list[float]) -> None:
 def test_the_time_to_set_the_scene_up_is_not_taken_for_work(clock: list[float]) -> None:
     log = StringIO()
     with Progress("Rendering", log) as progress:
+        clock[0] = 5.0
+        progress(0, 4)
         clock[0] = 50.0
         progress(0, 4)
         clock[0] = 60.0
         progress(1, 4)
     assert "25 % after 1 min 00 s, about 30.0 s left" in log.getvalue()
+
+
+def test_a_budget_of_time_runs_from_the_first_call_on(clock: list[float]) -> None:
+    log = StringIO()
+    with Progress("Rendering", log, time_s=40.0) as progress:
+        for clock[0] in (5.0, 15.0):
+            progress(0, 4)
+    assert "25 % after 15.0 s, about 30.0 s left" in log.getvalue()
 
 
 def test_each_frame_has_an_error_of_its_own(clock: list[float]) -> None:

@@ -87,11 +87,15 @@ class Progress:
         self._noted = _Noted(error, at_end, worked_s, done_share)
 
     def __call__(self, done: int, total: int) -> None:
-        """Tell that ``done`` of ``total`` pieces of work are over; a first 0 starts the clock."""
+        """Tell that ``done`` of ``total`` pieces of work are over.
+
+        What comes before the first piece is no work, by which the rest could be foretold; a budget
+        of time runs from the first call on.
+        """
         now = time.monotonic()
-        if not self._is_begun and done == 0:
+        if done == 0 and not self._is_begun:
             self._began = now
-        self._is_begun = True
+        self._is_begun = self._is_begun or done > 0 or self._time_s is not None
         worked_s = now - self._began
         share = self._share(done, total, worked_s)
         if self._bar is not None and self._task is not None:
@@ -126,6 +130,9 @@ class Progress:
 
     def _details(self, done: int, total: int, elapsed_s: float) -> Iterator[str]:
         if self._pixels is None:
+            return
+        if done == 0:
+            yield "no sample yet"
             return
         samples = f"{done / self._pixels:.3g}"
         if self._time_s is None and done >= self._first_round:
