@@ -16,6 +16,7 @@ Node: TypeAlias = Mapping[str, Any]
 #: A model without a title is titled by its own ``kind``.
 _SECTIONS: dict[str, dict[str, str]] = {
     "camera": {"PinholeCamera": "", "ThinLensCamera": "", "OrthographicCamera": ""},
+    "eyes": {"Eye": "`[[eyes]]`"},
     "image": {"ImageSettings": "`[image]`"},
     "display": {
         "DisplaySettings": "`[display]`",

@@ -250,6 +250,7 @@ class Scene:
         threads: int = 0,
         tile: int = 64,
         progress: Callable[[int, int], object] | None = None,
+        preview: Callable[[_Array, _Array, int, tuple[float, _Array] | None], object] | None = None,
     ) -> Render: ...
     def features(self, width: int, height: int, *, threads: int = 0) -> _Array: ...
 

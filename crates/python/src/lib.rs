@@ -18,6 +18,7 @@ mod emission;
 mod material;
 mod outcome;
 mod photometer;
+mod preview;
 mod render;
 mod watch;
 

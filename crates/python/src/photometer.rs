@@ -15,6 +15,7 @@ use pyo3::types::PyDict;
 
 use crate::arrays::{direction, shaped, table, triples, vector, Spectrum, Triple};
 use crate::outcome::lost_rays;
+use crate::preview::Preview;
 use crate::render::{PathMethod, Scene};
 use crate::value_error;
 use crate::watch::watch;
@@ -282,9 +283,10 @@ impl Photometer {
     ) -> PyResult<bool> {
         let time_budget = time_budget_s.map(Duration::try_from_secs_f64).transpose();
         let time_budget = time_budget.map_err(value_error)?;
-        let (outcome, interrupted) = watch(py, progress.as_ref(), |progress| {
-            self.meter().walk(&self.scene.get().world(), more, time_budget, threads, progress)
-        })?;
+        let (outcome, interrupted) =
+            watch(py, progress.as_ref(), Preview::new(None), |progress| {
+                self.meter().walk(&self.scene.get().world(), more, time_budget, threads, progress)
+            })?;
         outcome.map_err(value_error)?;
         Ok(interrupted)
     }

@@ -14,6 +14,7 @@ use pyo3::prelude::*;
 use crate::arrays::{shaped, Triple};
 use crate::builder::camera;
 use crate::outcome::Render;
+use crate::preview::Preview;
 use crate::value_error;
 use crate::watch::watch;
 
@@ -152,8 +153,11 @@ impl Scene {
     /// Render samples `first_sample`..`first_sample + samples` of every pixel.
     ///
     /// `progress(done, total)` is called a few times a second with counts of samples over all
-    /// pixels. If it raises, or a signal arrives, the rendering stops and what is done comes back
-    /// with `interrupted` set.
+    /// pixels, and `preview(xyz, standard_error, samples, outlook)` every two seconds or more with
+    /// the picture so far, (height, width, 3), and its count of samples. The outlook is None where the
+    /// end is not known; else it is the share of the work that is done, and what each standard error
+    /// will be multiplied with, (height, width). If one of them raises, or a signal arrives, the
+    /// rendering stops and what is done comes back with `interrupted` set.
     ///
     /// `counts` are samples from `first_sample` on for each pixel, row by row: they stand in for
     /// `samples`, `adaptive`, `target_error` and `time_budget_s`.
@@ -161,7 +165,7 @@ impl Scene {
         width, height, samples, method, *, first_sample=0, adaptive=false, target_error=None, time_budget_s=None,
         counts=None,
         sampling="sobol", filter="gaussian", seed=1, bands_per_lane=0, layers=false, threads=0,
-        tile=64, progress=None
+        tile=64, progress=None, preview=None
     ))]
     fn render(
         &self,
@@ -183,6 +187,7 @@ impl Scene {
         threads: usize,
         tile: usize,
         progress: Option<Py<PyAny>>,
+        preview: Option<Py<PyAny>>,
     ) -> PyResult<Render> {
         let time_budget = time_budget_s.map(Duration::try_from_secs_f64).transpose();
         let guide = match &method {
@@ -212,7 +217,9 @@ impl Scene {
             tile,
         };
         let (outcome, interrupted) =
-            watch(py, progress.as_ref(), |progress| render(&self.world(), &settings, progress))?;
+            watch(py, progress.as_ref(), Preview::new(preview.as_ref()), |progress| {
+                render(&self.world(), &settings, progress)
+            })?;
         let rendered = outcome.map_err(value_error)?;
         let bodies = self.world().bodies.iter().map(|body| body.name.clone()).collect();
         Ok(Render::new(rendered, bodies, self.groups.clone(), interrupted))

@@ -10,14 +10,17 @@ use lamplit_core::render::Progress;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
 
+use crate::preview::Preview;
+
 /// How often Python is asked whether to go on.
 const WATCH_INTERVAL: Duration = Duration::from_millis(50);
 
-/// Work on another thread; ask Python every now and then whether to go on. Returns what the work
-/// brought, and whether a signal stopped it.
+/// Work on another thread; ask Python every now and then whether to go on, and let it see `preview`.
+/// Returns what the work brought, and whether a signal stopped it.
 pub fn watch<T: Send>(
     py: Python<'_>,
     callback: Option<&Py<PyAny>>,
+    mut preview: Preview<'_>,
     work: impl FnOnce(&Progress) -> T + Send,
 ) -> PyResult<(T, bool)> {
     let progress = Progress::default();
@@ -42,7 +45,8 @@ pub fn watch<T: Send>(
                             py.check_signals()?;
                             let done = progress.done.load(Ordering::Relaxed);
                             let total = progress.total.load(Ordering::Relaxed);
-                            callback.map(|call| call.call1(py, (done, total))).transpose()
+                            callback.map(|call| call.call1(py, (done, total))).transpose()?;
+                            preview.look(py, &progress.viewfinder)
                         });
                         if let Err(error) = asked {
                             interrupted = Python::attach(|py| {

@@ -15,6 +15,8 @@ from lamplit.cli.overrides import command_line
 from lamplit.cli.scene_run import SceneRun
 from lamplit.cli.stopping import stop_signals
 from lamplit.cli.viewing import ViewOptions
+from lamplit.cli.views import Round, render_round
+from lamplit.cli.watching import watched
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -51,6 +53,32 @@ def render(
             "With --error or --time adaptive, else uniform.",
         ),
     ] = None,
+    turntable: Annotated[
+        int | None,
+        typer.Option(
+            "--turntable",
+            metavar="N",
+            help="N pictures from round the lamp, and an animation: the eye moves to its right "
+            "about the camera's target and up.",
+        ),
+    ] = None,
+    sweep: Annotated[
+        float | None,
+        typer.Option(
+            "--sweep",
+            metavar="DEG",
+            help="The turntable's angle, the camera in its middle: 90, or 360 for a full circle.",
+        ),
+    ] = None,
+    eyes: Annotated[
+        str | None,
+        typer.Option(
+            "--eyes",
+            metavar="FILE",
+            help="A picture from each eye point of a CSV or TOML file, and an animation; "
+            "scene takes the scene's own [[eyes]].",
+        ),
+    ] = None,
     layers: Annotated[
         bool, typer.Option("--layers", help="Also write each light group by itself, for mix.")
     ] = False,
@@ -72,18 +100,22 @@ def render(
 ) -> None:
     """Render SCENE: picture.png for the display, picture.exr with exact values, summary.json.
 
-    With --error or --time, --samples is the most that a pixel takes on average. Ctrl-C keeps the
-    samples that are done. Exit code 1: the files are written, but the picture is not to be
-    trusted, since too many rays were lost.
+    With --error or --time, --samples is the most that a pixel takes on average. Meanwhile
+    preview.png shows the picture so far. Ctrl-C keeps the samples that are done. With --turntable
+    or --eyes there is a frame from each place, all under one white, and animation.png; --time is
+    then for all frames together, and Ctrl-C keeps the frames that are done. Exit code 1: the files
+    are written, but the picture is not to be trusted, since too many rays were lost.
     """
     from lamplit import engine
     from lamplit.cli.closing import end_if_refused
     from lamplit.report.atomic import prepare_output
     from lamplit.report.picture_files import picture_files, write_picture
+    from lamplit.report.preview import PREVIEW_FILE, PreviewFile
     from lamplit.report.progress import Progress
     from lamplit.scene.memory import MOST_BANDS, check_memory, memory_estimate
     from lamplit.scene.shining import light_groups
 
+    places = Round(turntable, sweep, eyes)
     scene = run.load(view.overrides())
     asked: dict[str, Any] = {
         "method": run.method_name,
@@ -91,37 +123,57 @@ def render(
         "error": error,
         "time_s": time,
         "adaptive": adaptive,
-        "layers": layers,
     }
+    depth = 16 if bits is Bits.sixteen else 8
+    if places.is_asked:
+        places.refuse(
+            {
+                "--layers": layers,
+                "--features": features,
+                "--spectral": spectral,
+                "--gamut-mask": gamut_mask,
+                "--false-colour": view.false_colour,
+                "--glare": view.glare,
+            }
+        )
+        check_memory(memory_estimate(scene), None if max_memory is None else max_memory * 2**30)
+        render_round(run, scene, places.places(scene), asked, bits=depth)
+        return
+    asked["layers"] = layers
     settled = engine.plan(scene, **asked)
     estimate = memory_estimate(
         scene, bands=MOST_BANDS if spectral else 0, layers=len(light_groups(scene)) if layers else 0
     )
     check_memory(estimate, None if max_memory is None else max_memory * 2**30)
-    prepare_output(run.output, picture_files(scene.display, layers=layers, gamut_mask=gamut_mask))
+    contents = picture_files(scene.display, layers=layers, gamut_mask=gamut_mask)
+    prepare_output(run.output, [*contents, PREVIEW_FILE])
     pixels = scene.image.width * scene.image.height
     progress = Progress(
         "Rendering",
         pixels=pixels,
         time_s=time,
         first_round=engine.FIRST_ROUND_SAMPLES * pixels if settled.adaptive else 0,
+        error=settled.error,
     )
-    with stop_signals() as stop, progress:
-        try:
-            image = engine.render(
-                scene,
-                **asked,
-                threads=run.threads,
-                spectral_bands=spectral,
-                features=features,
-                progress=progress,
-            )
-        except engine.RenderInterrupted as stopped:
-            image = stopped.image
-    stop.end_if_empty(image)
-    image = replace(image, command=command_line(sys.argv))
-    depth = 16 if bits is Bits.sixteen else 8
-    numbers = write_picture(image, run.output, bits=depth, spectral=spectral, gamut_mask=gamut_mask)
+    with PreviewFile(run.output) as preview:
+        with stop_signals() as stop, progress:
+            try:
+                image = engine.render(
+                    scene,
+                    **asked,
+                    threads=run.threads,
+                    spectral_bands=spectral,
+                    features=features,
+                    progress=progress,
+                    preview=watched(progress, preview),
+                )
+            except engine.RenderInterrupted as stopped:
+                image = stopped.image
+        stop.end_if_empty(image)
+        image = replace(image, command=command_line(sys.argv))
+        numbers = write_picture(
+            image, run.output, bits=depth, spectral=spectral, gamut_mask=gamut_mask
+        )
     contents = picture_files(scene.display, layers=bool(image.layers), gamut_mask=gamut_mask)
     _tell(run.output, image, numbers, contents)
     stop.end_if_interrupted(image)

@@ -17,6 +17,8 @@ from lamplit.engine.plan import FIRST_ROUND_SAMPLES, Plan, plan
 from lamplit.engine.receivers import Goniometer, Plane
 from lamplit.engine.reflectors import ReflexInterrupted, ReflexMeasurement, measure_reflector
 from lamplit.engine.render import RenderInterrupted, render
+from lamplit.engine.snapshot import Snapshot
+from lamplit.engine.views import Views, plan_views, render_views
 
 __all__ = [
     "FIRST_ROUND_SAMPLES",
@@ -36,9 +38,13 @@ __all__ = [
     "ReflexInterrupted",
     "ReflexMeasurement",
     "RenderInterrupted",
+    "Snapshot",
+    "Views",
     "compare",
     "measure",
     "measure_reflector",
     "plan",
+    "plan_views",
     "render",
+    "render_views",
 ]

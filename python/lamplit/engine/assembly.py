@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
 
 from lamplit import _core
@@ -19,6 +21,8 @@ from lamplit.materials.models import (
     Mirror,
 )
 from lamplit.scene import ResolvedObject, Scene
+from lamplit.scene.camera import Camera
+from lamplit.scene.fields import Vector
 from lamplit.scene.lighting import DirectionalLight, PointLight, SphereLight
 from lamplit.scene.objects import (
     Box,
@@ -44,6 +48,34 @@ def assemble(scene: Scene, carrier: Carrier) -> _core.Scene:
     return _Assembly(scene, carrier).build()
 
 
+class _TakesCamera(Protocol):
+    """What the core is told of a camera by."""
+
+    def __call__(
+        self,
+        position_mm: Vector,
+        target_mm: Vector,
+        up: Vector,
+        *,
+        field_of_view_deg: float | None = None,
+        height_mm: float | None = None,
+        lens_mm: tuple[float, float] | None = None,
+    ) -> None: ...
+
+
+def aim(take: _TakesCamera, camera: Camera) -> None:
+    """Tell the core of ``camera``: ``take`` is `set_camera` of a builder, or `look` of a scene."""
+    view = (camera.position_mm, camera.target_mm, camera.up)
+    match camera.kind:
+        case "pinhole":
+            take(*view, field_of_view_deg=camera.field_of_view_deg)
+        case "thin-lens":
+            lens = (camera.aperture_mm, camera.focus_distance_mm)
+            take(*view, field_of_view_deg=camera.field_of_view_deg, lens_mm=lens)
+        case "orthographic":
+            take(*view, height_mm=camera.height_mm)
+
+
 class _Assembly:
     def __init__(self, scene: Scene, carrier: Carrier) -> None:
         self._scene = scene
@@ -56,7 +88,7 @@ class _Assembly:
         try:
             for thing in self._scene.resolved_objects():
                 self._add_object(thing)
-            self._set_camera()
+            aim(self._builder.set_camera, self._scene.camera)
             self._add_lights()
             surround = core_background(self._scene, self._carrier, self._groups)
             self._builder.set_background(surround)
@@ -116,19 +148,6 @@ class _Assembly:
 
     def _fraction(self, spec: FractionSpec | None) -> Array | None:
         return None if spec is None else self._carrier.reflectance(spec.distribution())
-
-    def _set_camera(self) -> None:
-        camera = self._scene.camera
-        view = (camera.position_mm, camera.target_mm, camera.up)
-        match camera.kind:
-            case "pinhole":
-                self._builder.set_camera(*view, field_of_view_deg=camera.field_of_view_deg)
-            case "thin-lens":
-                lens = (camera.aperture_mm, camera.focus_distance_mm)
-                angle = camera.field_of_view_deg
-                self._builder.set_camera(*view, field_of_view_deg=angle, lens_mm=lens)
-            case "orthographic":
-                self._builder.set_camera(*view, height_mm=camera.height_mm)
 
     def _add_lights(self) -> None:
         for at, light in enumerate(self._scene.lights):

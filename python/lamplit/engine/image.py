@@ -92,13 +92,7 @@ class Image:
         It is relative to the pixel's luminance and 1 % of the picture's mean together, since a
         share of black has no meaning. Infinite where a pixel has fewer than two samples.
         """
-        good = np.isfinite(self.xyz).all(axis=-1)
-        luminance, error = self.luminance_cd_m2[good], self.xyz_standard_error[..., 1][good]
-        if not error.any():
-            return 0.0
-        tone = luminance + _FLOOR * luminance.mean()
-        shares = np.divide(error, tone, out=np.zeros_like(error), where=error > 0.0)
-        return float(np.sqrt(np.square(shares).mean()))
+        return relative_error(self.xyz, self.xyz_standard_error)
 
     def to_xarray(self) -> xarray.Dataset:
         """Return the image as a labelled dataset; each array has ``units`` and a ``long_name``.
@@ -112,3 +106,14 @@ class Image:
         from lamplit.engine.labelled import labelled
 
         return labelled(self)
+
+
+def relative_error(xyz: Array, standard_error: Array) -> float:
+    """Return the `Image.relative_error` of X, Y, Z (H, W, 3) and their standard errors."""
+    good = np.isfinite(xyz).all(axis=-1)
+    luminance, error = xyz[..., 1][good], standard_error[..., 1][good]
+    if not error.any():
+        return 0.0
+    tone = luminance + _FLOOR * luminance.mean()
+    shares = np.divide(error, tone, out=np.zeros_like(error), where=error > 0.0)
+    return float(np.sqrt(np.square(shares).mean()))

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -17,6 +18,7 @@ from lamplit.engine.features import features_of
 from lamplit.engine.image import Image
 from lamplit.engine.ledger import Ledger
 from lamplit.engine.plan import Plan, plan
+from lamplit.engine.snapshot import PreviewCallback, Snapshot
 from lamplit.errors import SceneError
 from lamplit.scene import Scene
 from lamplit.scene.shining import light_notices, path_notices
@@ -51,6 +53,7 @@ def render(
     layers: bool = False,
     features: bool = False,
     progress: ProgressCallback | None = None,
+    preview: PreviewCallback | None = None,
 ) -> Image:
     """Render ``scene`` and return tristimulus values in cd/m² with their standard errors.
 
@@ -67,7 +70,10 @@ def render(
 
     ``threads`` of None takes one per core; the result does not depend on it, but for how far it
     comes in ``time_s``. ``spectral_bands`` keeps each pixel's spectrum, ``layers`` a picture for
-    each light group, ``features`` what each pixel looks at.
+    each light group, ``features`` what each pixel looks at. ``progress`` is called with the samples
+    done and to do, ``preview`` every two seconds or more with the picture so far: its ``xyz``,
+    ``xyz_standard_error``, ``samples`` over all pixels, ``relative_error`` and, where it is known,
+    ``relative_error_at_end``.
 
     Raises:
         LamplitError: The scene or an argument cannot be used, or arguments contradict each other.
@@ -82,6 +88,42 @@ def render(
         adaptive=adaptive,
         layers=layers,
     )
+    start = time.perf_counter()
+    stage = set_stage(settled, colour)
+    keeps_bands = spectral_bands and colour == "spectral"
+    return expose(
+        stage,
+        started=start,
+        bands=_bands_per_lane(settled, stage.phases) if keeps_bands else 0,
+        layers=layers,
+        features=features,
+        threads=threads,
+        progress=progress,
+        preview=preview,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Stage:
+    """A scene that is assembled and ready to be seen by its camera."""
+
+    settled: Plan
+    colour: Literal["spectral", "rgb"]
+    world: _core.Scene
+    #: How many wavelengths each lane takes in turn.
+    phases: int
+    #: Of the files as they were read, whatever becomes of them.
+    scene_hash: str
+    build_s: float
+    notices: tuple[str, ...]
+
+
+def set_stage(settled: Plan, colour: Literal["spectral", "rgb"] = "spectral") -> Stage:
+    """Assemble the scene of ``settled``.
+
+    Raises:
+        LamplitError: Something in the scene cannot be used.
+    """
     scene = settled.scene
     notices = light_notices(scene)
     if settled.method != "hall":
@@ -90,15 +132,42 @@ def render(
     carrier: Carrier = spectral
     if colour == "rgb":
         carrier = RgbCarrier(spectral, scene.resolve_source(scene.display.white))
-    keeps_bands = spectral_bands and colour == "spectral"
-    bands = _bands_per_lane(settled, spectral.phases) if keeps_bands else 0
     start = time.perf_counter()
     world = assemble(scene, carrier)
-    scene_hash = scene.scene_hash  # of the files as they were read, whatever becomes of them
+    build_s = time.perf_counter() - start
+    return Stage(settled, colour, world, spectral.phases, scene.scene_hash, build_s, notices)
+
+
+def expose(
+    stage: Stage,
+    *,
+    started: float,
+    bands: int = 0,
+    layers: bool = False,
+    features: bool = False,
+    threads: int | None,
+    progress: ProgressCallback | None,
+    preview: PreviewCallback | None = None,
+) -> Image:
+    """Take the picture of ``stage``; ``started`` is when `time.perf_counter` saw the work begin.
+
+    Raises:
+        RenderInterrupted: Ctrl-C.
+    """
+    settled, world = stage.settled, stage.world
+    scene = settled.scene
     seen = features_of(scene, world, threads=threads) if features else None
     built = time.perf_counter()
-    outcome = _trace(settled, world, bands=bands, layers=layers, threads=threads, progress=progress)
-    timings = {"build_s": built - start, "trace_s": time.perf_counter() - built}
+    outcome = _trace(
+        settled,
+        world,
+        bands=bands,
+        layers=layers,
+        threads=threads,
+        progress=progress,
+        preview=preview,
+    )
+    timings = {"build_s": stage.build_s, "trace_s": time.perf_counter() - built}
     counts = outcome.samples()
     by_group, by_group_error = _by_group(outcome)
     has_bands = bands > 0 and outcome.spectral_radiance().size > 0
@@ -118,14 +187,14 @@ def render(
         seed=scene.image.seed,
         scene=scene,
         method=settled.method,
-        colour=colour,
+        colour=stage.colour,
         statistics=outcome.statistics() | timings | {"geometry_bytes": world.memory_bytes},
-        elapsed_s=time.perf_counter() - start,
-        notices=notices,
+        elapsed_s=time.perf_counter() - started,
+        notices=stage.notices,
         complete=not outcome.interrupted,
         interrupted=outcome.interrupted,
         version=_core.__version__,
-        command=_call(settled, colour, scene_hash),
+        command=_call(settled, stage.colour, stage.scene_hash),
     )
     if image.interrupted:
         raise RenderInterrupted(image)
@@ -140,14 +209,25 @@ def _trace(
     layers: bool,
     threads: int | None,
     progress: ProgressCallback | None,
+    preview: PreviewCallback | None,
 ) -> _core.Render:
-    image = settled.scene.image
+    scene = settled.scene
+    image = scene.image
+
+    def show(
+        xyz: Array, standard_error: Array, samples: int, outlook: tuple[float, Array] | None
+    ) -> None:
+        if preview is not None:
+            preview(Snapshot(scene, xyz, standard_error, samples, outlook))
+
+    if progress is not None:
+        progress(0, image.width * image.height * image.samples)
     try:
         return world.render(
             image.width,
             image.height,
             image.samples,
-            _method(settled.scene),
+            _method(scene),
             adaptive=settled.adaptive,
             target_error=settled.error,
             time_budget_s=settled.time_s,
@@ -158,9 +238,10 @@ def _trace(
             layers=layers,
             threads=threads or 0,
             progress=progress,
+            preview=None if preview is None else show,
         )
     except ValueError as fault:
-        raise SceneError(str(fault), file=settled.scene.path) from fault
+        raise SceneError(str(fault), file=scene.path) from fault
 
 
 def _method(scene: Scene) -> _core.HallMethod | _core.PathMethod | _core.LitMethod:

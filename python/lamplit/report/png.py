@@ -54,17 +54,28 @@ def encode_png(
 ) -> bytes:
     """Return the bytes that `write_png` writes."""
     height, width, _ = encoded.shape
-    largest = (1 << bits) - 1
-    codes = np.rint(np.clip(encoded, 0.0, 1.0) * largest).astype(">u2" if bits == 16 else "u1")
+    pixels = compressed(encoded, bits=bits)
+    return head(width, height, display, bits, provenance) + chunk(b"IDAT", pixels) + TAIL
+
+
+def head(
+    width: int,
+    height: int,
+    display: Display,
+    bits: Literal[8, 16],
+    provenance: Mapping[str, str] | None,
+) -> bytes:
+    """Return all of a PNG that comes before its pixels."""
     header = struct.pack(">IIBBBBB", width, height, bits, _TRUECOLOUR, 0, 0, 0)
-    chunks = [_chunk(b"IHDR", header), *_colour_chunks(display)]
+    chunks = [chunk(b"IHDR", header), *_colour_chunks(display)]
     chunks += [_text_chunk(keyword, text) for keyword, text in (provenance or {}).items()]
-    chunks += [_chunk(b"IDAT", _compressed(codes)), _chunk(b"IEND", b"")]
     return _SIGNATURE + b"".join(chunks)
 
 
-def _compressed(codes: NDArray[np.unsignedinteger]) -> bytes:
-    """Return the deflated rows, each stored as its difference to the one above."""
+def compressed(encoded: NDArray[np.float64], *, bits: Literal[8, 16]) -> bytes:
+    """Return the deflated rows of codes, each stored as its difference to the one above."""
+    largest = (1 << bits) - 1
+    codes = np.rint(np.clip(encoded, 0.0, 1.0) * largest).astype(">u2" if bits == 16 else "u1")
     rows = np.frombuffer(codes.tobytes(), dtype=np.uint8).reshape(codes.shape[0], -1)
     filtered = np.empty((rows.shape[0], rows.shape[1] + 1), dtype=np.uint8)
     filtered[:, 0] = _FILTER_UP
@@ -76,25 +87,30 @@ def _compressed(codes: NDArray[np.unsignedinteger]) -> bytes:
 def _colour_chunks(display: Display) -> list[bytes]:
     chunks: list[bytes] = []
     if display.cicp is not None:
-        chunks.append(_chunk(b"cICP", bytes(display.cicp)))
+        chunks.append(chunk(b"cICP", bytes(display.cicp)))
     if display.name == "srgb":
         relative_colorimetric = b"\x01"
         corners = np.concatenate([[display.white_xy], display.primaries_xy]).ravel()
-        chunks.append(_chunk(b"sRGB", relative_colorimetric))
-        chunks.append(_chunk(b"gAMA", struct.pack(">I", 45455)))
-        chunks.append(_chunk(b"cHRM", struct.pack(">8I", *np.rint(corners * 1e5).astype(int))))
+        chunks.append(chunk(b"sRGB", relative_colorimetric))
+        chunks.append(chunk(b"gAMA", struct.pack(">I", 45455)))
+        chunks.append(chunk(b"cHRM", struct.pack(">8I", *np.rint(corners * 1e5).astype(int))))
     else:
         profile = zlib.compress(display.icc_profile(), 9)
         chunks.append(
-            _chunk(b"iCCP", display.name.encode("latin-1", "replace")[:79] + b"\0\0" + profile)
+            chunk(b"iCCP", display.name.encode("latin-1", "replace")[:79] + b"\0\0" + profile)
         )
     return chunks
 
 
 def _text_chunk(keyword: str, text: str) -> bytes:
     """Return an iTXt chunk: a Latin-1 keyword and UTF-8 text, uncompressed, no language."""
-    return _chunk(b"iTXt", keyword.encode("latin-1")[:79] + b"\0\0\0\0\0" + text.encode())
+    return chunk(b"iTXt", keyword.encode("latin-1")[:79] + b"\0\0\0\0\0" + text.encode())
 
 
-def _chunk(kind: bytes, body: bytes) -> bytes:
+def chunk(kind: bytes, body: bytes) -> bytes:
+    """Return a chunk with its length and checksum (PNG §5.3)."""
     return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+
+
+#: What a PNG ends with.
+TAIL = chunk(b"IEND", b"")

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import cast
 
@@ -26,14 +26,34 @@ def scene_hash(scene: Scene) -> str:
     Raises:
         SceneError: A file is no longer there.
     """
+    return _hash_of(scene, _contents(scene))
+
+
+def share_hashes(scenes: Sequence[Scene]) -> None:
+    """Give ``scenes``, which name the same files, their hashes; each file is read once, now.
+
+    Raises:
+        SceneError: A file is no longer there.
+    """
+    contents = _contents(scenes[0])
+    for scene in scenes:
+        vars(scene)["scene_hash"] = _hash_of(scene, contents)
+
+
+def _hash_of(scene: Scene, contents: bytes) -> str:
     values = scene.model_dump(mode="json")
     text = json.dumps(values, sort_keys=True, ensure_ascii=False, separators=(",", ":"))
-    total = hashlib.sha256(text.encode())
-    for name in sorted(set(_named_files(values))):
+    return hashlib.sha256(text.encode() + contents).hexdigest()
+
+
+def _contents(scene: Scene) -> bytes:
+    """Return the names of the scene's files, each with the SHA-256 of what is in it."""
+    found = bytearray()
+    root = scene.root.resolve()
+    for name in sorted(set(_named_files(scene.model_dump(mode="json")))):
         for path in mesh_files(resolve_inside(scene.root, name), scene.root):
-            total.update(path.relative_to(scene.root.resolve()).as_posix().encode() + b"\0")
-            total.update(_digest(path))
-    return total.hexdigest()
+            found += path.relative_to(root).as_posix().encode() + b"\0" + _digest(path)
+    return bytes(found)
 
 
 def _digest(path: Path) -> bytes:

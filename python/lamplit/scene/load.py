@@ -13,6 +13,7 @@ from pydantic import ValidationError
 from lamplit.errors import LamplitError, SceneError
 from lamplit.files import resolve_inside
 from lamplit.scene.emission import FileDistribution
+from lamplit.scene.eyes import check_eyes
 from lamplit.scene.faults import scene_fault
 from lamplit.scene.lighting import ImageBackground
 from lamplit.scene.measuring import check_measuring
@@ -65,6 +66,7 @@ def _parsed(written: Mapping[str, object], *, root: Path, path: Path | None) -> 
     try:
         check_references(scene)
         check_measuring(scene)
+        check_eyes(scene)
         _check_files(scene)
     except LamplitError as fault:
         raise type(fault)(fault.message, file=path or fault.file, where=fault.where) from fault

@@ -13,6 +13,7 @@ from pydantic import Discriminator, Field, PrivateAttr, Tag, model_validator
 from lamplit.materials import HallTerms, Material, Roughness, Texture
 from lamplit.materials.finish import check_texture
 from lamplit.scene.camera import Camera, DisplaySettings, ImageSettings
+from lamplit.scene.eyes import MOST_FRAMES, Eye
 from lamplit.scene.fields import Name, Table
 from lamplit.scene.lighting import BLACK, Ambient, Background, Light
 from lamplit.scene.measuring import MeasureSettings
@@ -96,6 +97,10 @@ class Scene(Table):
 
     ray_files: Annotated[tuple[RayFile, ...], Field(strict=False, max_length=1000)] = Field(
         default=(), description="sources measured ray by ray, for forward transport"
+    )
+
+    eyes: Annotated[tuple[Eye, ...], Field(strict=False, max_length=MOST_FRAMES)] = Field(
+        default=(), description="more places to see the scene from, one after the other"
     )
 
     _root: Path = PrivateAttr(default=Path())

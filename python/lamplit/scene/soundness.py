@@ -9,6 +9,7 @@ from typing import Literal, TypeAlias
 
 from lamplit.errors import SceneError
 from lamplit.scene.contact import Contact, find_contacts
+from lamplit.scene.eyes import seen_from
 from lamplit.scene.memory import MemoryEstimate, memory_estimate
 from lamplit.scene.models import Scene
 from lamplit.scene.rays import ray_faults, ray_notices
@@ -17,7 +18,7 @@ from lamplit.scene.resolve import ResolvedObject, solid_faults
 from lamplit.scene.shining import light_faults, path_notices
 from lamplit.scene.solids import Body, bodies
 from lamplit.scene.spectra import spectral_faults
-from lamplit.scene.view import view_fault
+from lamplit.scene.view import view_fault, views_fault
 from lamplit.spectra_spec import NamedSource
 from lamplit.table_faults import key_path
 
@@ -76,6 +77,8 @@ def _errors(scene: Scene) -> Iterator[Finding]:
         *ray_faults(scene),
     ]
     if (unseen := view_fault(scene)) is not None:
+        faults.append(unseen)
+    if scene.eyes and (unseen := views_fault(seen_from(scene, scene.eyes), where="eyes")):
         faults.append(unseen)
     for fault in faults:
         yield Finding("error", fault.where or scene.name, fault.message)

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -20,9 +22,27 @@ def view_fault(scene: Scene) -> LamplitError | None:
     An object counts as seen when its bounding box is not wholly beside or behind the picture, so a
     camera that does see something is never refused.
     """
+    return _fault_among(bodies(scene), scene)
+
+
+def views_fault(views: Sequence[Scene], *, where: str) -> SceneError | None:
+    """Return what is wrong with the first of ``views`` of one scene that cannot be seen.
+
+    ``where`` names the list that the views come from.
+    """
+    everything = bodies(views[0])
+    for at, view in enumerate(views):
+        if (fault := _fault_among(everything, view)) is not None:
+            place = ", ".join(f"{round(part, 6):.4g}" for part in view.camera.position_mm)
+            return SceneError(
+                f"from ({place}) mm, {fault.message}", file=view.path, where=f"{where}[{at}]"
+            )
+    return None
+
+
+def _fault_among(everything: Sequence[Body], scene: Scene) -> LamplitError | None:
     camera = scene.camera
     eye = np.array(camera.position_mm)
-    everything = bodies(scene)
     for body in everything:
         if not body.thing.transparent and body.contains(eye):
             return SceneError(

@@ -8,6 +8,7 @@ mod light_film;
 mod pass;
 mod photometer;
 mod settings;
+mod snapshot;
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -26,6 +27,7 @@ pub use features::{features, Features};
 pub use learning::learn;
 pub use photometer::{Batch, MeasureError, Photometer, BATCHES};
 pub use settings::{Method, RenderSettings, DEEPEST};
+pub use snapshot::{Outlook, Snapshot, Viewfinder};
 
 /// Where a rendering stands, shared with whoever watches it.
 #[derive(Debug, Default)]
@@ -36,6 +38,8 @@ pub struct Progress {
     pub total: AtomicU64,
     /// Set it to stop: what is done stays.
     pub cancelled: AtomicBool,
+    /// Shows the picture in the making.
+    pub viewfinder: Viewfinder,
 }
 
 impl Progress {
@@ -71,9 +75,6 @@ pub enum RenderError {
     #[error("the threads cannot be started: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
 }
-
-/// The most samples that a pixel takes before the next pixel has its turn.
-const LONGEST_PASS: u32 = 64;
 
 /// The stack of a thread, in bytes. One level of Hall's recursion takes about 4 KiB.
 const STACK: usize = 16 * 1024 * settings::DEEPEST_HALL as usize;
@@ -170,12 +171,12 @@ impl Rendering<'_> {
             for exposure in &mut exposures {
                 exposure.limit = Some(Allocation::given(counts.clone()));
             }
-            self.expose(&mut exposures, &mut tally, samples.start..u32::MAX, None);
+            self.expose(&mut exposures, &mut tally, samples.start..u32::MAX, None, None);
             return Rendered::of(exposures, None, tally);
         }
         let pilot_samples = self.pilot_samples();
         if !self.settings.allots() || pilot_samples == samples.len() as u32 {
-            self.expose(&mut exposures, &mut tally, samples, self.settings.time_budget);
+            self.expose(&mut exposures, &mut tally, samples, self.settings.time_budget, None);
             return Rendered::of(exposures, None, tally);
         }
         let eyes = Instant::now();
@@ -190,7 +191,7 @@ impl Rendering<'_> {
                 shown.begin_anew();
                 shown.walk(LightFilm::per_batch(paths), self.progress);
             }
-            self.expose(&mut exposures, &mut tally, rest..u32::MAX, None);
+            self.expose(&mut exposures, &mut tally, rest..u32::MAX, None, shown.as_ref());
         }
         Rendered::of(exposures, shown, tally)
     }
@@ -217,11 +218,11 @@ impl Rendering<'_> {
     ) -> u32 {
         // No spread is known of fewer than two.
         let second = samples.end.min(samples.start + 2);
-        self.expose(exposures, tally, samples.start..second, None);
+        self.expose(exposures, tally, samples.start..second, None, None);
         let quarter = self.settings.time_budget.map(|budget| {
             (budget / 4).saturating_sub(self.began.elapsed()).max(Duration::from_nanos(1))
         });
-        self.expose(exposures, tally, second..samples.end, quarter).max(second)
+        self.expose(exposures, tally, second..samples.end, quarter, None).max(second)
     }
 
     /// How many samples of every pixel can be had, if those of the first round took so long.
@@ -270,6 +271,7 @@ impl Rendering<'_> {
         tally: &mut Tally,
         samples: Range<u32>,
         time_budget: Option<Duration>,
+        shown: Option<&LightFilm<'_>>,
     ) -> u32 {
         let started = Instant::now();
         let most = |exposure: &Exposure| {
@@ -285,8 +287,11 @@ impl Rendering<'_> {
         };
         self.progress.total.store(exposures.iter().map(all).sum(), Ordering::Relaxed);
         let (mut next, mut length) = (samples.start, 1);
+        let is_counted = !self.settings.allots() && time_budget.is_none();
+        let each = is_counted.then_some(samples.len() as u32);
         while next < end && !self.progress.is_cancelled() {
             let until = end.min(next + length);
+            let pass_started = Instant::now();
             let Self { scene, settings, interior, guide, leaves_rough, progress, .. } = *self;
             for Exposure { part, film, limit } in &mut *exposures {
                 let (part, limit) = (*part, limit.as_ref());
@@ -305,7 +310,8 @@ impl Rendering<'_> {
                 tally.add(&pass.run(film));
             }
             next = until;
-            length = (length * 2).min(LONGEST_PASS);
+            self.progress.viewfinder.show(|| self.snapshot(exposures, shown, each));
+            length = self.progress.viewfinder.next_length(length, pass_started.elapsed());
             if let Some(budget) = time_budget {
                 let spent = started.elapsed().as_secs_f64();
                 let left = (budget.as_secs_f64() - spent) / spent;

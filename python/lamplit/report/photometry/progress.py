@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator
 from typing import TextIO
 
-from lamplit.report.progress import Progress
+from lamplit.report.progress import Progress, percent
 
 #: From so many on, paths are told in millions.
 _LARGE = 1e5
@@ -71,12 +71,3 @@ def in_words(count: float) -> str:
     if count >= _LARGE:
         return f"{float(f'{count / 1e6:.3g}'):g} million"
     return f"{float(f'{count:.3g}'):.0f}"
-
-
-def percent(share: float) -> str:
-    """Return a relative error in percent, two digits of it.
-
-    >>> percent(1.04), percent(0.0123)
-    ('104 %', '1.2 %')
-    """
-    return f"{100.0 * share:.0f} %" if share >= 0.0995 else f"{100.0 * share:.2g} %"
