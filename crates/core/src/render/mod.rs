@@ -18,7 +18,7 @@ use thiserror::Error;
 
 use crate::film::Film;
 use crate::scene::{Interior, Scene};
-use crate::transport::{Guide, LightSource, Part, Shining, Tally};
+use crate::transport::{Guide, Ledger, LightSource, Part, Shining, Tally};
 use allocation::{Allocation, Pilot};
 use light_film::LightFilm;
 use pass::Pass;
@@ -307,7 +307,12 @@ impl Rendering<'_> {
                     guide,
                     progress,
                 };
-                tally.add(&pass.run(film));
+                let mut own = pass.run(film);
+                if part == Part::Specular {
+                    // Its walks end half-way; those of the other part go all the way.
+                    own.ledger = Ledger::new(scene.bodies.len());
+                }
+                tally.add(&own);
             }
             next = until;
             self.progress.viewfinder.show(|| self.snapshot(exposures, shown, each));
