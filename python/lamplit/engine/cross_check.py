@@ -1,34 +1,30 @@
 # SPDX-License-Identifier: Apache-2.0 OR MIT
-"""`cross_check`: the same candela by the other way, walked from the eye of the receiver.
-
-A receiver reads the mean intensity over its own aperture: I = ∫ L cos θ dA over what shines, seen
-along each direction of the aperture. An orthographic camera that covers the lamp sees L, and the
-mean of its luminances times its area is I. At a finite distance d the camera is a pinhole at the
-receiver, which reads E·d² with E = ∫ L cos⁴ θ over its picture at the distance 1.
-"""
+"""`cross_check`: the same candela both ways, from the light and from the eye of the receiver."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from statistics import NormalDist
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lamplit import _core
 from lamplit.engine.assembly import assemble
 from lamplit.engine.carrier import SpectralCarrier
+from lamplit.engine.looking import Looking, eye_method
 from lamplit.errors import LamplitError
 
 if TYPE_CHECKING:
+    from lamplit.engine.eye_reading import EyeReading
     from lamplit.engine.measurement import Lit, Measurement
-    from lamplit.engine.receivers import Goniometer
 
 Array = NDArray[np.float64]
 
-#: Independent rounds of pictures: their spread is the standard error.
-_ROUNDS = 8
-_M2_PER_MM2 = 1e-6
+#: Where nothing is said: so many spots, and so many looks from each.
+_SPOTS, _LOOKS = 3, 1 << 20
+#: How often the largest of all differences may be called one by chance.
+_ALPHA = 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,157 +47,67 @@ class CrossCheck:
         sigma = np.hypot(self.light_standard_error_cd, self.eye_standard_error_cd)
         return np.divide(off, sigma, out=np.zeros_like(off), where=off != 0.0)
 
+    @property
+    def allowed(self) -> float:
+        """How many standard errors the largest of p differences exceeds by chance in 1 of 100."""
+        each = 1.0 - (1.0 - _ALPHA) ** (1.0 / max(1, self.light_cd.size))
+        return NormalDist().inv_cdf(1.0 - each / 2.0)
+
 
 def cross_check(
     measurement: Measurement,
     lit: Lit = None,
     *,
     spots: NDArray[np.intp] | list[int] | None = None,
-    pixels: int = 96,
-    samples: int = 16,
-    eyes: int = 2,
+    looks: int | None = None,
 ) -> CrossCheck:
-    """Return both intensities of ``spots`` (their numbers; None: the brightest three).
+    """Return both intensities of ``spots``, by their numbers.
 
-    ``eyes`` places in the receiver's aperture in each of 8 rounds look at the lamp in pictures of
-    ``pixels`` on the longer side, with ``samples`` each. What shines behind smooth glass and is
-    smaller than a pixel is found by chance: a large standard error says so.
+    What the measurement read by the eye is compared as it is. With ``looks``, or where it read
+    nothing, the eye of each spot takes so many anew (None: a million, of the brightest three).
 
     Raises:
-        LamplitError: There is no spot, or the light was not the scene's own.
+        LamplitError: There is no spot, the light was not the scene's own, or an eye cannot see it.
     """
-    from lamplit.engine.measure import in_laboratory
-
     if measurement.light is not None:
         raise LamplitError("only what shines in the scene can be seen by an eye; leave light out")
-    seen = measurement.observed(lit)
+    seen = measurement.observed(lit, by="light")
     if seen.spot_cd.size == 0:
         raise LamplitError("there are no spots to check; measure some")
-    brightest = np.argsort(seen.spot_cd)[::-1][:3]
-    chosen = np.sort(brightest) if spots is None else np.asarray(spots, dtype=np.intp)
-    scene = measurement.scene
-    carrier = SpectralCarrier(scene.image.wavelength_range_nm, scene.image.observer)
-    world = assemble(in_laboratory(scene), carrier)
-    eye = _Eye(world, measurement, measurement.weights(lit), (pixels, samples, eyes))
-    found = np.array(
-        [eye.intensity(direction) for direction in measurement.goniometer.directions()[chosen]]
-    )
+    if measurement.eye is not None and looks is None:
+        looked = np.flatnonzero(measurement.eye.looks > 0)
+        chosen = looked if spots is None else np.asarray(spots, dtype=np.intp)
+        xyz, covariance = (part[chosen] for part in measurement.eye.observed(measurement.weights(lit)))
+    else:
+        brightest = np.argsort(seen.spot_cd)[::-1][:_SPOTS]
+        chosen = np.sort(brightest) if spots is None else np.asarray(spots, dtype=np.intp)
+        reading = _look_again(measurement, chosen, looks or _LOOKS)
+        xyz, covariance = reading.observed(measurement.weights(lit))
     return CrossCheck(
         seen.spot_h_deg[chosen],
         seen.spot_v_deg[chosen],
         seen.spot_cd[chosen],
         seen.spot_standard_error_cd[chosen],
-        found[:, 0],
-        found[:, 1],
+        xyz[:, 1],
+        np.sqrt(covariance[:, 1, 1]),
     )
 
 
-class _Eye:
-    def __init__(
-        self,
-        world: _core.Scene,
-        measurement: Measurement,
-        weights: Array,
-        fineness: tuple[int, int, int],
-    ) -> None:
-        self._world, self._weights = world, weights
-        self._pixels, self._samples, self._eyes = fineness
-        self._gonio: Goniometer = measurement.goniometer
-        self._seed, self._threads = measurement.seed, measurement.threads
-        path = measurement.scene.path_settings
-        self._method = _core.PathMethod(
-            max_depth=path.max_depth,
-            split_depth=path.split_depth,
-            roulette_below=path.roulette_below,
-        )
-        bounds = world.bounds_mm
-        if bounds is None:
-            raise LamplitError("an eye cannot see endless planes whole")
-        low, high = np.asarray(bounds[0]), np.asarray(bounds[1])
-        share = np.array([[i & 1, i >> 1 & 1, i >> 2 & 1] for i in range(8)], dtype=np.float64)
-        self._corners: Array = low + share * (high - low)
+def _look_again(measurement: Measurement, spots: NDArray[np.intp], looks: int) -> EyeReading:
+    from lamplit.engine.measure import in_laboratory
 
-    def intensity(self, direction: Array) -> tuple[float, float]:
-        """Return the intensity towards a receiver, and its standard error."""
-        rounds = [
-            np.mean([self._look(way, at) for way, at in self._aperture(direction, turn)])
-            for turn in range(_ROUNDS)
-        ]
-        return float(np.mean(rounds)), float(np.std(rounds, ddof=1) / np.sqrt(_ROUNDS))
-
-    def _aperture(self, direction: Array, turn: int) -> list[tuple[Array, int]]:
-        """Return directions spread over the receiver, and a seed for each."""
-        right, up = _square(direction)
-        half = np.radians(self._gonio.receiver_deg) / 2.0
-        ways: list[tuple[Array, int]] = []
-        for eye in range(self._eyes):
-            number = turn * self._eyes + eye
-            u, v = (0.754877666 * number + 0.3) % 1.0, (0.569840291 * number + 0.7) % 1.0
-            cos = 1.0 - u * (1.0 - np.cos(half))
-            sin, phi = np.sqrt(1.0 - cos * cos), 2.0 * np.pi * v
-            way = direction * cos + (right * np.cos(phi) + up * np.sin(phi)) * sin
-            ways.append((way, self._seed + 7919 * (number + 1)))
-        return ways
-
-    def _look(self, way: Array, seed: int) -> float:
-        """Return the intensity along one direction from the lamp."""
-        right, up = _square(way)
-        if self._gonio.distance_m is None:
-            x, y = self._corners @ right, self._corners @ up
-            middle = self._corners.mean(axis=0)
-            middle = middle + right * (np.mean(_ends(x)) - middle @ right)
-            middle = middle + up * (np.mean(_ends(y)) - middle @ up)
-            reach = float((self._corners @ way).max() - middle @ way) + 1.0
-            width, height = float(np.ptp(x)), float(np.ptp(y))
-            position = middle + way * reach
-            self._world.look(position.tolist(), middle.tolist(), up.tolist(), height_mm=height)
-            columns, rows = self._size(width, height)
-            area = height * height * columns / rows * _M2_PER_MM2
-            return float((self._luminances(columns, rows, seed) * area / (columns * rows)).sum())
-        distance = 1e3 * self._gonio.distance_m
-        position = np.asarray(self._gonio.centre_mm) + way * distance
-        rays = self._corners - position
-        depth = -(rays @ way)
-        reach = max(np.abs(rays @ right / depth).max(), np.abs(rays @ up / depth).max())
-        angle = float(np.degrees(2.0 * np.arctan(reach)))
-        target = self._gonio.centre_mm
-        self._world.look(position.tolist(), target, up.tolist(), field_of_view_deg=angle)
-        side = self._pixels
-        middles = reach * (2.0 * (np.arange(side) + 0.5) / side - 1.0)
-        cos2 = 1.0 / (1.0 + middles[:, None] ** 2 + middles[None, :] ** 2)
-        pixel = (2.0 * reach / side) ** 2
-        illuminance = float((self._luminances(side, side, seed) * cos2**2).sum()) * pixel
-        return illuminance * self._gonio.distance_m**2
-
-    def _size(self, width: float, height: float) -> tuple[int, int]:
-        """Return columns and rows of square pixels; the columns cover the width."""
-        if width >= height:
-            rows = max(1, round(self._pixels * height / width))
-            return int(np.ceil(width / (height / rows) - 1e-9)), rows
-        return max(1, int(np.ceil(width / (height / self._pixels) - 1e-9))), self._pixels
-
-    def _luminances(self, columns: int, rows: int, seed: int) -> Array:
-        """Return the luminances (rows, columns) of the lit groups, in cd/m²."""
-        outcome = self._world.render(
-            columns,
-            rows,
-            self._samples,
-            self._method,
-            filter="box",
-            seed=seed,
-            layers=True,
-            threads=self._threads or 0,
-        )
-        return np.einsum("g,grc->rc", self._weights, outcome.layers()[..., 1])
-
-
-def _square(way: Array) -> tuple[Array, Array]:
-    """Return two unit vectors square to ``way`` and to each other."""
-    helper = np.eye(3)[int(np.argmin(np.abs(way)))]
-    right = np.cross(helper, way)
-    right /= np.linalg.norm(right)
-    return right, np.cross(way, right)
-
-
-def _ends(values: Array) -> list[float]:
-    return [float(values.min()), float(values.max())]
+    scene = measurement.scene
+    carrier = SpectralCarrier(scene.image.wavelength_range_nm, scene.image.observer)
+    looking = Looking(
+        assemble(in_laboratory(scene), carrier),
+        measurement.goniometer,
+        eye_method(scene),
+        groups=len(measurement.groups),
+        # Other looks than those of the measurement.
+        seed=measurement.seed + 1,
+        threads=measurement.threads,
+        spots=spots,
+    )
+    if looking.until(looks * len(spots)):
+        raise KeyboardInterrupt
+    return looking.reading()

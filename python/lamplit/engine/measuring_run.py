@@ -13,12 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lamplit import _core
+from lamplit.engine.looking import Looking
 from lamplit.engine.lumens import LumenLedger
 from lamplit.engine.measurement import Measurement
 from lamplit.engine.receivers import Goniometer
 
 Array = NDArray[np.float64]
-#: Called with the paths done and to do, a few times a second.
+#: Called with the paths done and to do, a few times a second. Where an eye reads too, half of each
+#: is a path from the light, half a look from the eye.
 ProgressCallback = Callable[[int, int], object]
 
 #: Paths where nothing says how many.
@@ -46,6 +48,8 @@ class Run:
     #: What a `Measurement` says of what was measured.
     about: Mapping[str, Any]
     threads: int
+    #: What reads the spots by the eye: one look for each path of light.
+    looking: Looking | None = None
     started: float = field(default_factory=time.perf_counter)
 
     def until(
@@ -66,11 +70,15 @@ class Run:
         most = min(math.ceil(most / _core.BATCHES), MOST_IN_BATCH)
         wanted = min(FIRST_ROUND, most) if is_open else most
         while True:
-            left = None if time_s is None else time_s - (time.perf_counter() - self.started)
             before = self.meter.paths_per_batch
+            share = 1.0 if self.looking is None else 0.5
+            left = None if time_s is None else share * (time_s - self._elapsed_s)
             interrupted = self.walk(wanted - before, left, progress, most)
             done = self.meter.paths_per_batch
-            is_over = done >= most or done < wanted or interrupted
+            if not interrupted:
+                interrupted = self._look(paths, error, time_s, progress)
+            is_late = time_s is not None and self._elapsed_s >= time_s
+            is_over = done >= most or done < wanted or interrupted or is_late
             if is_over and not is_open:
                 return self.result(complete=not interrupted, interrupted=interrupted)
             result = self.result(complete=False, interrupted=interrupted)
@@ -78,6 +86,34 @@ class Run:
             if reached or is_over:
                 return replace(result, complete=reached and not interrupted)
             wanted = min(most, self._next(done, result, error))
+
+    @property
+    def _elapsed_s(self) -> float:
+        return time.perf_counter() - self.started
+
+    def _look(
+        self,
+        paths: int | None,
+        error: float | None,
+        time_s: float | None,
+        progress: ProgressCallback | None,
+    ) -> bool:
+        """Let the eye look once for each path done, or for the time left; return if interrupted."""
+        if self.looking is None:
+            return False
+        done = self.meter.paths_per_batch * _core.BATCHES
+        is_timed = time_s is not None and paths is None
+
+        def tell(looks: int) -> None:
+            if progress is not None:
+                progress((done + min(looks, done)) // 2, done)
+
+        return self.looking.until(
+            None if is_timed else done,
+            error=error or 0.0,
+            deadline=None if time_s is None else self.started + time_s,
+            progress=tell,
+        )
 
     def _next(self, done: int, result: Measurement, error: float | None) -> int:
         """Return how many paths of each batch are wanted: twice as many, or as the error says."""
@@ -98,7 +134,10 @@ class Run:
         def tell(done: int, total: int) -> None:
             if progress is not None:
                 is_open = most == MOST_IN_BATCH
-                progress(before + done, before + total if is_open else most * _core.BATCHES)
+                shown = before + done
+                if self.looking is not None:
+                    shown = (shown + min(self.looking.looks, shown)) // 2
+                progress(shown, before + total if is_open else most * _core.BATCHES)
 
         if time_s is not None and time_s <= 0.0:
             return False
@@ -140,6 +179,7 @@ class Run:
             paths=meter.paths_per_batch * _core.BATCHES,
             ledgers=found,
             statistics=meter.statistics(),
+            eye=None if self.looking is None else self.looking.reading(),
             elapsed_s=time.perf_counter() - self.started,
             complete=complete,
             interrupted=interrupted,

@@ -145,7 +145,8 @@ def _on_axis(measurement: Measurement, one: Asked) -> Spectrum | None:
         return None
     weights = measurement.weights(one.light or None)
     values = weights @ measurement.spot_spectra[:, int(at[0])]
-    seen = _observed(measurement, one.name, one.light)
+    # As certain as the walks from the light, which made the bands.
+    seen = measurement.observed(one.light or None, by="light")
     cd, error = float(seen.spot_cd[at[0]]), float(seen.spot_standard_error_cd[at[0]])
     fine = Spectrum(f"{one.name} at HV", measurement.band_centres_nm, values, "W/(sr nm)")
     return in_bands(fine, _hits(cd, error))
