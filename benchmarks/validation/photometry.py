@@ -138,7 +138,7 @@ def both_ways(lamp: str) -> Iterator[Finding]:
     with tempfile.TemporaryDirectory(prefix="lamplit-both-ways-") as folder:
         scene = ll.load_scene(write_lamp(lamp, Path(folder), parameters))
         found = ll.measure(scene, spots=spots, grid=_GRID, receiver_deg=5.0, paths=paths)
-        check = found.cross_check(spots=list(range(len(spots))), pixels=48, samples=8)
+        check = found.cross_check(spots=list(range(len(spots))), looks=1 << 19)
     # Of m points one may exceed what belongs to 1 − (1 − α)^(1/m): Šidák.
     level = 1.0 - (1.0 - ALPHA) ** (1.0 / len(spots))
     threshold = NormalDist().inv_cdf(1.0 - level / 2.0)

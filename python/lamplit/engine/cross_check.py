@@ -77,7 +77,9 @@ def cross_check(
     if measurement.eye is not None and looks is None:
         looked = np.flatnonzero(measurement.eye.looks > 0)
         chosen = looked if spots is None else np.asarray(spots, dtype=np.intp)
-        xyz, covariance = (part[chosen] for part in measurement.eye.observed(measurement.weights(lit)))
+        xyz, covariance = (
+            part[chosen] for part in measurement.eye.observed(measurement.weights(lit))
+        )
     else:
         brightest = np.argsort(seen.spot_cd)[::-1][:_SPOTS]
         chosen = np.sort(brightest) if spots is None else np.asarray(spots, dtype=np.intp)

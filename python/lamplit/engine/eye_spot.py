@@ -86,10 +86,10 @@ class EyeSpot:
             outcome = look(view, counts, int(seeds[batch]))
             if outcome is None:
                 return True
-            layers = outcome.layers()
+            layers, errors = _layers(outcome, before.xyz.shape[1])
             scale = view.areas_m2 / np.minimum(share, 1.0)
             xyz[batch] = np.einsum("rc,grci->gi", scale, layers)
-            met = met.with_looks(counts, layers[..., 1], outcome.layers_standard_error()[..., 1])
+            met = met.with_looks(counts, layers[..., 1], errors[..., 1])
         weight = float(looks) ** _WEIGHT_POWER
         xyz = before.xyz + weight * xyz
         weight += before.weight
@@ -98,3 +98,10 @@ class EyeSpot:
         done = before.looks + round(float(met.count.sum()))
         self._sums = _Sums(xyz, weight, before.rounds + 1, done, spreading)
         return False
+
+
+def _layers(outcome: _core.Render, groups: int) -> tuple[Array, Array]:
+    """Return X, Y, Z of the light groups and their standard errors, (g, rows, columns, 3)."""
+    if groups == 1:
+        return outcome.xyz()[None], outcome.xyz_standard_error()[None]
+    return outcome.layers(), outcome.layers_standard_error()

@@ -28,8 +28,8 @@ REPETITIONS = 16
 #: Pixels on the longer side of a receiver's picture; fewer where many pictures fill the memory.
 _PIXELS, _FEWEST_PIXELS = 256, 48
 _MOST_SUMS = 1 << 27
-#: Looks of a receiver's first round: as few where little is to be spent, as many at most.
-_SHORT_ROUND, _FIRST_ROUND = 1 << 14, 1 << 18
+#: Looks of a receiver's first round at most: it knows nothing. Each further one doubles them.
+_FIRST_ROUND = 1 << 14
 #: Every receiver gets this share of an even part; what is left goes where it is needed most.
 _EVEN_SHARE = 0.25
 #: Below this share of the brightest reading, less certainty is needed in proportion.
@@ -79,7 +79,7 @@ class Looking:
             EyeSpot((seed, int(number)), REPETITIONS, groups, view.areas_m2.shape)
             for number, view in zip(numbers, self._views, strict=True)
         ]
-        self._seed = seed
+        self._seed, self._groups = seed, groups
         #: Looks per second of the last round, looks that progress was told of, and who is told.
         self._rate: float | None = None
         self._told = 0
@@ -136,10 +136,10 @@ class Looking:
     ) -> tuple[int, int] | None:
         """Return which spot has its turn, and how many looks it takes; None where all is done."""
         count = len(self._spots)
-        left = _FIRST_ROUND * count if looks is None else looks - self.looks
+        left = 1 << 62 if looks is None else looks - self.looks
         if deadline is not None:
             seconds = deadline - time.perf_counter()
-            usual = _SHORT_ROUND if seconds > 0.0 else 0.0
+            usual = _FIRST_ROUND if seconds > 0.0 else 0.0
             left = min(left, int(usual if self._rate is None else seconds * self._rate))
         if count == 0 or left < REPETITIONS:
             return None
@@ -147,10 +147,10 @@ class Looking:
         if needs.max() <= error:
             return None
         done = np.array([spot.looks for spot in self._spots])
-        even = 4 * _SHORT_ROUND if looks is None else _EVEN_SHARE * looks / count
+        even = 4 * _FIRST_ROUND if looks is None else _EVEN_SHARE * looks / count
         behind = np.isfinite(needs).all() & (done < 0.9 * even)
         at = int(np.argmax(behind) if behind.any() else np.argmax(needs))
-        first = int(np.clip(even, REPETITIONS, _FIRST_ROUND if looks else _SHORT_ROUND))
+        first = int(np.clip(even, REPETITIONS, _FIRST_ROUND))
         return at, min(max(first, int(done[at])), left)
 
     def _look(
@@ -169,7 +169,7 @@ class Looking:
             counts=counts.ravel().tolist(),
             filter="box",
             seed=seed,
-            layers=True,
+            layers=self._groups > 1,
             threads=self._threads,
             progress=lambda done, _total: self._tell(before + done),
         )
@@ -182,9 +182,7 @@ class Looking:
             return [view]
         rng = np.random.default_rng((self._seed, at, self._spots[at].rounds, 1))
         shape = view.areas_m2.shape
-        return [
-            self._view(self._directions[at], shape, rng.random(2)) for _ in range(REPETITIONS)
-        ]
+        return [self._view(self._directions[at], shape, rng.random(2)) for _ in range(REPETITIONS)]
 
     def _view(
         self, direction: Array, pixels: int | tuple[int, int], place: Array | None = None

@@ -76,7 +76,9 @@ class Run:
             interrupted = self.walk(wanted - before, left, progress, most)
             done = self.meter.paths_per_batch
             if not interrupted:
-                interrupted = self._look(paths, error, time_s, progress)
+                # What is left of the time after the last walk is the eye's.
+                is_last = time_s is not None and paths is None and (not is_open or done < wanted)
+                interrupted = self._look(error, time_s, progress, most, is_open_ended=is_last)
             is_late = time_s is not None and self._elapsed_s >= time_s
             is_over = done >= most or done < wanted or interrupted or is_late
             if is_over and not is_open:
@@ -93,27 +95,31 @@ class Run:
 
     def _look(
         self,
-        paths: int | None,
         error: float | None,
         time_s: float | None,
         progress: ProgressCallback | None,
+        most: int,
+        *,
+        is_open_ended: bool,
     ) -> bool:
         """Let the eye look once for each path done, or for the time left; return if interrupted."""
         if self.looking is None:
             return False
         done = self.meter.paths_per_batch * _core.BATCHES
-        is_timed = time_s is not None and paths is None
-
-        def tell(looks: int) -> None:
-            if progress is not None:
-                progress((done + min(looks, done)) // 2, done)
-
         return self.looking.until(
-            None if is_timed else done,
+            None if is_open_ended else done,
             error=error or 0.0,
             deadline=None if time_s is None else self.started + time_s,
-            progress=tell,
+            progress=lambda looks: self._tell(progress, done, looks, done, most),
         )
+
+    def _tell(
+        self, progress: ProgressCallback | None, paths: int, looks: int, total: int, most: int
+    ) -> None:
+        """Tell how much is done of ``total`` paths, or of the ``most`` of every batch."""
+        if progress is not None:
+            shown = paths if self.looking is None else (paths + min(looks, paths)) // 2
+            progress(shown, total if most == MOST_IN_BATCH else most * _core.BATCHES)
 
     def _next(self, done: int, result: Measurement, error: float | None) -> int:
         """Return how many paths of each batch are wanted: twice as many, or as the error says."""
@@ -131,13 +137,10 @@ class Run:
         """
         before = self.meter.paths_per_batch * _core.BATCHES
 
+        looks = 0 if self.looking is None else self.looking.looks
+
         def tell(done: int, total: int) -> None:
-            if progress is not None:
-                is_open = most == MOST_IN_BATCH
-                shown = before + done
-                if self.looking is not None:
-                    shown = (shown + min(self.looking.looks, shown)) // 2
-                progress(shown, before + total if is_open else most * _core.BATCHES)
+            self._tell(progress, before + done, looks, before + total, most)
 
         if time_s is not None and time_s <= 0.0:
             return False

@@ -114,8 +114,7 @@ class Spreading:
             mixture = mixture * np.sqrt(gain)
             mixture = mixture / mixture.sum()
         usual = np.full(len(mixture), _PRIOR / len(mixture))
-        mixture = (1.0 - _PRIOR) * mixture + usual
-        return mixture
+        return (1.0 - _PRIOR) * mixture + usual
 
 
 def _noise(met: Met, cd: Array) -> tuple[Array, Array]:
