@@ -4,10 +4,11 @@
 Three ways to the candela at the points of un-r148/S1, on the same flat meshes, materials and
 sources: Lamplit's walk from the light, which serves all points at once; Lamplit's walk from the
 eye of each receiver (`lamplit.engine.looking`), which learns anew in each round; and Mitsuba's
-`volpathmis` with a sensor at each receiver. Its particle tracer is asked too: it connects to sensors
-in straight lines, and so sees nothing through a smooth cover. Standard errors come from independent repetitions; what was not
-waited for is told by σ ∝ 1/√time. Time is the processor's, of all threads, so that what else the
-machine does counts little. Writes ``candela.json``, ``.md`` and ``.png`` into the results:
+`volpathmis` with a sensor at each receiver. Its particle tracer is asked too: it connects to
+sensors in straight lines, and so sees nothing through a smooth cover. Standard errors come from
+independent repetitions; what was not waited for is told by σ ∝ 1/√time. Time is the processor's,
+of all threads, so that what else the machine does counts little. Writes ``candela.json``, ``.md``
+and ``.png`` into the results:
 
     python benchmarks/run.py --parts candela
 """

@@ -44,7 +44,8 @@ def measure(
         bool,
         typer.Option(
             "--cross-check",
-            help="Also measure the test points by walks from the receiver, and compare.",
+            help="Also show the test points by walks from the light and from the receiver, "
+            "beside each other.",
         ),
     ] = False,
     distance: DistanceOption = None,
@@ -88,6 +89,8 @@ def _tell(output: Path, results: Results, files: dict[str, str]) -> None:
         "paths": f"{results.paths / 1e6:.4g} million in {results.elapsed_s:.1f} s, "
         f"{results.paths / max(results.elapsed_s, 1e-9) / 1e6:.3g} million/s"
     }
+    if "test points" in results.geometry:
+        numbers["test points"] = results.geometry["test points"]
     if results.energy is not None:
         energy = results.energy
         numbers["flux"] = (
@@ -104,7 +107,7 @@ def _tell(output: Path, results: Results, files: dict[str, str]) -> None:
 
 
 def _compare(measurement: Measurement) -> None:
-    """Print the brightest test points by both ways: walked from the light, and from the eye."""
+    """Print the test points by both ways: walked from the light, and from the eye."""
     from rich.console import Console
     from rich.table import Table
 

@@ -96,13 +96,17 @@ class Looking:
         return EyeReading(xyz, np.array([spot.looks for spot in self._spots]))
 
     def needs(self) -> Array:
-        """Return how uncertain each spot is, (p,): σ/I, less for what is dim; infinite unlooked."""
+        """Return how uncertain each spot is, (p,): σ/I, less for what is dim; infinite unlooked.
+
+        Where nothing was seen yet, it falls with the root of the looks.
+        """
         reading = self.reading()
         xyz, covariance = reading.observed(np.ones(reading.xyz.shape[1]))
         mean, sigma = xyz[:, 1], np.sqrt(covariance[:, 1, 1])
         least = _DIM * float(mean.max(initial=0.0))
-        share = np.divide(sigma, mean + least, out=np.ones_like(mean), where=mean + least > 0.0)
-        return np.where([spot.rounds > 0 for spot in self._spots], share, np.inf)
+        unseen = np.sqrt(_FIRST_ROUND / np.maximum(reading.looks, 1))
+        share = np.divide(sigma, mean + least, out=unseen, where=mean > 0.0)
+        return np.where(reading.looks > 0, share, np.inf)
 
     def until(
         self,
@@ -114,8 +118,8 @@ class Looking:
     ) -> bool:
         """Look until all spots together have ``looks``; return whether Ctrl-C ended it.
 
-        It ends before that where no spot needs more than the relative error ``error``, or when
-        `time.perf_counter` reaches ``deadline``. ``looks`` of None is no end. ``progress`` is told
+        It ends before that where all spots that see light are certain to the relative error
+        ``error``, or when `time.perf_counter` reaches ``deadline``. ``looks`` of None is no end. ``progress`` is told
         the looks done. What is done is kept, but for the round that was interrupted.
         """
         self._tell = progress or (lambda _done: None)
@@ -143,10 +147,10 @@ class Looking:
             left = min(left, int(usual if self._rate is None else seconds * self._rate))
         if count == 0 or left < REPETITIONS:
             return None
-        needs = self.needs()
-        if needs.max() <= error:
+        needs, reading = self.needs(), self.reading()
+        done, is_seen = reading.looks, reading.sees.any(axis=0)
+        if is_seen.any() and (needs[is_seen | (done == 0)] <= error).all():
             return None
-        done = np.array([spot.looks for spot in self._spots])
         even = 4 * _FIRST_ROUND if looks is None else _EVEN_SHARE * looks / count
         behind = np.isfinite(needs).all() & (done < 0.9 * even)
         at = int(np.argmax(behind) if behind.any() else np.argmax(needs))

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from lamplit.photometry.chance import variance_of_mean
 from lamplit.report.photometry.judged import judged
+from lamplit.report.photometry.progress import in_words
 from lamplit.report.photometry.results import EnergyFlow, FunctionResults, Results, Spectrum
 
 Array = NDArray[np.float64]
@@ -21,6 +22,7 @@ _BANDS_TOGETHER = (1, 5, 10, 20)
 _HITS_IN_BAND = 30.0
 
 if TYPE_CHECKING:
+    from lamplit.engine.cross_check import CrossCheck
     from lamplit.engine.measurement import Measurement
     from lamplit.photometry.observed import Observed
     from lamplit.rules import Rule
@@ -59,6 +61,7 @@ def results_of(
         RuleError: A rule cannot be judged by it.
     """
     scene = measurement.scene
+    both = _both_ways(measurement)
     return Results(
         scene=scene.name,
         scene_hash=scene.scene_hash,
@@ -68,7 +71,8 @@ def results_of(
         functions=judged_functions(measurement, functions, production=production),
         energy=energy_of(measurement),
         spectra=_spectra(measurement),
-        geometry=_geometry(measurement),
+        geometry=_geometry(measurement, both),
+        notices=_apart(both),
         elapsed_s=measurement.elapsed_s,
         complete=measurement.complete,
     )
@@ -205,12 +209,38 @@ def in_bands(fine: Spectrum, hits: float) -> Spectrum | None:
     return None
 
 
-def _geometry(measurement: Measurement) -> dict[str, str]:
+def _both_ways(measurement: Measurement) -> CrossCheck | None:
+    """Return the readings of the eye beside those of the light; None where no eye looked."""
+    eye = measurement.eye
+    return measurement.cross_check() if eye is not None and eye.looks.any() else None
+
+
+def _apart(both: CrossCheck | None) -> tuple[str, ...]:
+    """Return a notice where the eye and the light differ by more than chance lets them."""
+    if both is None or not (apart := np.abs(both.sigmas)).max() > both.allowed:
+        return ()
+    at = int(apart.argmax())
+    return (
+        f"walks from the light and from the receiver differ by {apart[at]:.1f} σ at "
+        f"H {both.spot_h_deg[at]:g}°, V {both.spot_v_deg[at]:g}°: {both.light_cd[at]:.3g} and "
+        f"{both.eye_cd[at]:.3g} cd; smooth normals on a coarse mesh do that, or light that one of "
+        "them seldom finds",
+    )
+
+
+def _geometry(measurement: Measurement, both: CrossCheck | None) -> dict[str, str]:
     gonio = measurement.goniometer
     distance = gonio.distance_m
     centre = ", ".join(f"{at:.1f}".replace("-", "−") for at in gonio.centre_mm)
-    return {
+    found = {
         "distance": "far field" if distance is None else f"{distance:g} m",
         "receiver": f"{gonio.receiver_deg:.3g}° full angle",
         "reference centre": f"({centre}) mm",
     }
+    if both is not None and measurement.eye is not None:
+        found["test points"] = (
+            f"{in_words(float(measurement.eye.looks.sum()))} looks from the receivers; the light "
+            f"reads the same but for {np.abs(both.sigmas).max():.1f} σ at most, of "
+            f"{both.light_cd.size} points"
+        )
+    return found
