@@ -43,7 +43,7 @@ BUDGET_S, MOST_ROUNDS = 240.0, 64
 #: Light paths of a round.
 PATHS = 1 << 19
 #: Looks of an eye from each receiver at most; it ends before where it says 1 %.
-LOOKS = 3 << 20
+LOOKS = 1 << 21
 #: Passes of Mitsuba for each receiver in a round, and samples per pixel of a pass.
 PASSES = 2
 SAMPLES = {"llvm_ad_spectral": 48, "scalar_spectral": 12}

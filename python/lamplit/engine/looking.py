@@ -119,8 +119,9 @@ class Looking:
         """Look until all spots together have ``looks``; return whether Ctrl-C ended it.
 
         It ends before that where all spots that see light are certain to the relative error
-        ``error``, or when `time.perf_counter` reaches ``deadline``. ``looks`` of None is no end. ``progress`` is told
-        the looks done. What is done is kept, but for the round that was interrupted.
+        ``error``, or when `time.perf_counter` reaches ``deadline``. ``looks`` of None is no end.
+        ``progress`` is told the looks done. What is done is kept, but for the round that was
+        interrupted.
         """
         self._tell = progress or (lambda _done: None)
         try:

@@ -95,7 +95,7 @@ class Spreading:
         if len(self.ways) == len(mixture):
             own_power, own_spread = _noise(more, cd)
             noise = np.where(share < 1.0, own_power, own_spread) * areas_m2**2
-            mixture = self._fitted(noise)
+            mixture = self._fitted(noise) if noise.any() else self.mixture
         return Spreading(met, np.stack([even, *ways]), mixture)
 
     def _fitted(self, noise: Array) -> Array:

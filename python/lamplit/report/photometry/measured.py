@@ -220,12 +220,13 @@ def _apart(both: CrossCheck | None) -> tuple[str, ...]:
     if both is None or not (apart := np.abs(both.sigmas)).max() > both.allowed:
         return ()
     at = int(apart.argmax())
-    return (
+    notice = (
         f"walks from the light and from the receiver differ by {apart[at]:.1f} σ at "
         f"H {both.spot_h_deg[at]:g}°, V {both.spot_v_deg[at]:g}°: {both.light_cd[at]:.3g} and "
         f"{both.eye_cd[at]:.3g} cd; smooth normals on a coarse mesh do that, or light that one of "
-        "them seldom finds",
+        "them seldom finds"
     )
+    return (notice,)
 
 
 def _geometry(measurement: Measurement, both: CrossCheck | None) -> dict[str, str]:
