@@ -95,7 +95,7 @@ class EyeSpot:
         weight += before.weight
         cd = xyz[..., 1].mean(axis=0) / weight
         spreading = before.spreading.taught_by(met, views[0].areas_m2, cd, share)
-        done = before.looks + round(float(met.count.sum()))
+        done = before.looks + round(float(met.looks.sum()))
         self._sums = _Sums(xyz, weight, before.rounds + 1, done, spreading)
         return False
 

@@ -101,11 +101,11 @@ class Looking:
         Where nothing was seen yet, it falls with the root of the looks.
         """
         reading = self.reading()
-        xyz, covariance = reading.observed(np.ones(reading.xyz.shape[1]))
+        xyz, covariance = reading.observed(np.ones(self._groups))
         mean, sigma = xyz[:, 1], np.sqrt(covariance[:, 1, 1])
         least = _DIM * float(mean.max(initial=0.0))
-        unseen = np.sqrt(_FIRST_ROUND / np.maximum(reading.looks, 1))
-        share = np.divide(sigma, mean + least, out=unseen, where=mean > 0.0)
+        unseen: Array = np.sqrt(_FIRST_ROUND / np.maximum(reading.looks, 1.0))
+        share = np.divide(sigma, mean + least, out=unseen, where=np.greater(mean, 0.0))
         return np.where(reading.looks > 0, share, np.inf)
 
     def until(

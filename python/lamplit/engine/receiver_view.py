@@ -92,13 +92,15 @@ def receiver_view(
     radius = 0.0 if at is not None else distance * float(np.tan(half))
     rays = corners - eye
     helper = np.eye(3)[int(np.argmin(np.abs(towards)))]
-    forward, focus = -towards, distance
-    frame, low, high = np.eye(3), np.zeros(2), np.zeros(2)
-    # Turned to the middle of what it sees; twice, for the turn itself moves that.
+    forward: Array = -towards
+    focus = distance
+    frame: Array = np.eye(3)
+    low, high = np.zeros(2), np.zeros(2)
+    # Turned to the middle of what it sees, which the turn itself moves a little.
     for _ in range(3):
-        right = np.cross(forward, helper)
+        right: Array = np.asarray(np.cross(forward, helper), np.float64)
         right /= np.linalg.norm(right)
-        frame = np.stack([right, np.cross(right, forward), forward])
+        frame = np.array([right, np.cross(right, forward), forward], dtype=np.float64)
         x, y, depth = frame @ rays.T
         if depth.min() <= 0.0:
             raise LamplitError("the lamp reaches up to a receiver, which cannot see all of it")
@@ -109,7 +111,7 @@ def receiver_view(
         low = np.array([(x - spread).min(), (y - spread).min()])
         high = np.array([(x + spread).max(), (y + spread).max()])
         middle = (low + high) / 2.0
-        forward = np.array([*middle, 1.0]) @ frame
+        forward = np.asarray(np.array([*middle, 1.0]) @ frame, np.float64)
         forward /= np.linalg.norm(forward)
     reach = np.maximum(np.abs(low), np.abs(high)) * (1.0 + _MARGIN)
     if isinstance(pixels, int):

@@ -23,7 +23,7 @@ class Met(NamedTuple):
     """What looks met, pixel by pixel: how many looks, and by light group Σ Y and Σ Y²."""
 
     #: (rows, columns), then (g, rows, columns) twice.
-    count: Map
+    looks: Map
     first: Map
     second: Map
 
@@ -38,7 +38,7 @@ class Met(NamedTuple):
         n = counts.astype(np.float64)
         spread = np.where(counts > 1, error, 0.0) ** 2 * n * (n - 1.0)
         squares = self.second + spread + n * mean**2
-        sums = (self.count + n, self.first + n * mean, squares)
+        sums = (self.looks + n, self.first + n * mean, squares)
         return Met(*(own.astype(np.float32) for own in sums))
 
     def __add__(self, other: object) -> Met:
@@ -85,7 +85,7 @@ class Spreading:
         if not power.any():
             return Spreading(met, self.ways, self.mixture)
         size, even = max(areas_m2.shape), self.ways[0]
-        count = met.count.astype(np.float64)
+        count = met.looks.astype(np.float64)
         maps = [_root(power, count, blur * size) for blur in _BLURS]
         # Where a pixel has several looks, only what differs within it is noise.
         maps.append(_root(spread, count, _BLURS[-1] * size))
@@ -119,8 +119,8 @@ class Spreading:
 
 def _noise(met: Met, cd: Array) -> tuple[Array, Array]:
     """Return each pixel's sum of squares, and of squares off its mean, relative to ``cd``."""
-    power, spread = np.zeros(met.count.shape), np.zeros(met.count.shape)
-    count = np.maximum(met.count.astype(np.float64), 1.0)
+    power, spread = np.zeros(met.looks.shape), np.zeros(met.looks.shape)
+    count = np.maximum(met.looks.astype(np.float64), 1.0)
     for first, second, own in zip(met.first, met.second, cd.tolist(), strict=True):
         if own > 0.0:
             power += second / own**2
