@@ -44,8 +44,9 @@ BUDGET_S, MOST_ROUNDS = 240.0, 64
 PATHS = 1 << 19
 #: Looks of an eye from each receiver at most; it ends before where it says 1 %.
 LOOKS = 1 << 21
-#: Passes of Mitsuba for each receiver in a round, and samples per pixel of a pass.
-PASSES = 2
+#: Passes of Mitsuba for each receiver in a round, and samples per pixel of a pass. With fewer, none
+#: of them may meet what a dim point has, and its σ says nothing.
+PASSES = 16
 SAMPLES = {"llvm_ad_spectral": 48, "scalar_spectral": 12}
 #: Whoever is not the best variant is timed at this receiver alone: the axis.
 _AXIS = (0.0, 0.0)

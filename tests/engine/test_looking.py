@@ -14,6 +14,7 @@ import lamplit as ll
 from lamplit.engine import CrossCheck, MeasureInterrupted, Measurement
 from lamplit.engine.assembly import assemble
 from lamplit.engine.carrier import SpectralCarrier
+from lamplit.engine.eye_reading import EyeReading
 from lamplit.engine.looking import Looking, eye_method
 from lamplit.scene import Scene
 
@@ -143,7 +144,7 @@ def test_readings_are_right_on_average_and_scatter_as_they_say(
     expected = 100.0 / np.pi
     spread = cd.std(ddof=1)
     assert abs(cd.mean() - expected) < 3.5 * spread / np.sqrt(len(cd))
-    assert spread < 0.2 * expected
+    assert spread < 0.4 * expected
     # χ² of 15 degrees of freedom lies within 0.23 and 2.5 of its mean, but for 1 in 1000.
     assert 0.23 < spread**2 / np.mean(sigma**2) < 2.5
 
@@ -197,6 +198,20 @@ def test_where_the_eye_sees_nothing_the_light_bounds_it(lamp_of: Callable[..., S
     # −ln 0.0228 = 3.78 paths may have come: 2 σ.
     bound = 0.5 * 3.78 * 100.0 / found.paths / found.goniometer.spot_sr
     assert seen.spot_standard_error_cd[0] == pytest.approx(bound, rel=0.01)
+
+
+def test_a_spot_that_met_weak_light_alone_may_have_missed_the_strong() -> None:
+    # Hits of 100 cd at the first spot, one of 10⁻³ cd in one repetition at the second.
+    strong, weak = np.resize([0.0, 200.0], 16), np.zeros(16)
+    weak[0] = 1e-3
+    xyz = np.stack([strong, weak], axis=1)[:, None, :, None] * np.ones(3)
+    reading = EyeReading(xyz, np.array([1000, 1000]))
+    cd, covariance = reading.observed(np.ones(1))
+    sigma = np.sqrt(covariance[:, 1, 1])
+    assert cd[0, 1] == pytest.approx(100.0)
+    hit = np.var(strong, ddof=1) / 16.0 / 100.0
+    # 3.78 hits may have been missed: 2 σ.
+    assert sigma[1] == pytest.approx(3.78 / 2.0 * hit, rel=0.01)
 
 
 def test_the_same_bits_for_any_threads_and_others_for_another_seed(

@@ -30,14 +30,17 @@ class EyeReading:
     def observed(self, weights: Array) -> tuple[Array, Array]:
         """Return X, Y, Z (p, 3) of the groups by their ``weights``, and the covariance (p, 3, 3).
 
-        It is let out where looks that met light were few (`lamplit.photometry.chance`).
+        It is let out where looks that met light were few (`lamplit.photometry.chance`): a hit may
+        be as strong as those of the spot that has the strongest, look for look.
         """
         xyz = np.einsum("g,bgpi->bpi", weights, self.xyz)
         covariance = covariance_of_mean(xyz)
+        looks = np.maximum(self.looks, 1.0)
         for group, weight in enumerate(weights):
             own = self.xyz[:, group]
-            spread = variance_of_mean(own[..., 1])
-            bound = let_out(own[..., 1].mean(axis=0), spread, 0.0)
+            mean, spread = own[..., 1].mean(axis=0), variance_of_mean(own[..., 1])
+            of_hits = np.divide(spread * looks, mean, out=np.zeros_like(mean), where=mean > 0)
+            bound = let_out(mean, spread, of_hits.max(initial=0.0) / looks)
             growth = np.divide(bound - spread, spread, out=np.zeros_like(spread), where=spread > 0)
             covariance += weight**2 * growth[:, None, None] * covariance_of_mean(own)
         return xyz.mean(axis=0), covariance
