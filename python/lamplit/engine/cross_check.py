@@ -143,8 +143,12 @@ def _look_again(
         threads=measurement.threads,
         spots=spots,
     )
-    tell = progress or (lambda _done, _total: None)
-    if looking.until(total, progress=lambda done: tell(done, total)):
+
+    def tell(done: int) -> None:
+        if progress is not None:
+            progress(done, total)
+
+    if looking.until(total, progress=tell):
         raise KeyboardInterrupt
-    tell(total, total)
+    tell(total)
     return looking.reading()

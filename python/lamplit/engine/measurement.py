@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     import xarray
 
     from lamplit.engine.cross_check import CrossCheck
+    from lamplit.engine.eye_reading import EyeReading
     from lamplit.engine.light_sources import Light
-    from lamplit.engine.looking import EyeReading
     from lamplit.scene import Scene
 
 Array = NDArray[np.float64]
