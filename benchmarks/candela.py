@@ -3,11 +3,12 @@
 
 Three ways to the candela at the points of un-r148/S1, on the same flat meshes, materials and
 sources: Lamplit's walk from the light, which serves all points at once; Lamplit's walk from the
-eye of each receiver (`Measurement.cross_check`); and Mitsuba's `volpathmis` with a sensor at each
-receiver. Its particle tracer is asked too: it connects to sensors in straight lines, and so sees
-nothing through a smooth cover. Standard errors come from independent repetitions; what was not
-waited for is told by σ ∝ 1/√time. Time is the processor's, of all threads, so that what else the
-machine does counts little. Writes ``candela.json``, ``.md`` and ``.png`` into the results:
+eye of each receiver (`lamplit.engine.looking`), which learns anew in each round; and Mitsuba's
+`volpathmis` with a sensor at each receiver. Its particle tracer is asked too: it connects to
+sensors in straight lines, and so sees nothing through a smooth cover. Standard errors come from
+independent repetitions; what was not waited for is told by σ ∝ 1/√time. Time is the processor's,
+of all threads, so that what else the machine does counts little. Writes ``candela.json``, ``.md``
+and ``.png`` into the results:
 
     python benchmarks/run.py --parts candela
 """
@@ -22,12 +23,15 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from candela_report import Round, as_markdown, draw, summary
+from candela_report import WANTED, Round, as_markdown, draw, summary
 from candela_scene import Array, corners_mm, lit_lamp, receiver
 from machine import machine
 from peers.mitsuba_process import Mitsuba, variants
 
 import lamplit as ll
+from lamplit.engine.assembly import assemble
+from lamplit.engine.carrier import SpectralCarrier
+from lamplit.engine.looking import Looking, eye_method
 from lamplit.engine.measurement import Measurement
 from lamplit.rules import find_rule
 
@@ -38,10 +42,11 @@ DISTANCE_M = 10.0
 BUDGET_S, MOST_ROUNDS = 240.0, 64
 #: Light paths of a round.
 PATHS = 1 << 19
-#: Pixels on the longer side and samples of an eye's pictures, 16 of each receiver.
-EYE_PIXELS, EYE_SAMPLES = 48, 1
-#: Passes of Mitsuba for each receiver in a round, and samples per pixel of a pass.
-PASSES = 2
+#: Looks of an eye from each receiver at most; it ends before where it says 1 %.
+LOOKS = 1 << 21
+#: Passes of Mitsuba for each receiver in a round, and samples per pixel of a pass. With fewer, none
+#: of them may meet what a dim point has, and its σ says nothing.
+PASSES = 16
 SAMPLES = {"llvm_ad_spectral": 48, "scalar_spectral": 12}
 #: Whoever is not the best variant is timed at this receiver alone: the axis.
 _AXIS = (0.0, 0.0)
@@ -102,7 +107,7 @@ def _rounds(
     for turn in range(MOST_ROUNDS):
         own, light = _light(scene, spots, seed=turn + 1, paths=PATHS)
         rounds["light walk"].append(own)
-        rounds["eye walk"].append(_eye(light))
+        rounds["eye walk"].append(_eye(scene, light, turn + 1))
         if best is not None:
             rounds["Mitsuba"].append(_peer(peers[best], best, sensors, turn))
         spent = time.perf_counter() - started
@@ -114,7 +119,7 @@ def _rounds(
 
 def _light(scene: ll.Scene, spots: Array, *, seed: int, paths: int) -> tuple[Round, Measurement]:
     core = time.process_time()
-    done = ll.measure(scene, spots=spots, grid=(_ALL, _ALL), paths=paths, seed=seed)
+    done = ll.measure(scene, spots=spots, grid=(_ALL, _ALL), paths=paths, seed=seed, eye=False)
     core = time.process_time() - core
     # Of the batches as they are, zeros included: without the upper bound that `observed` gives to
     # what no path met, so that the mean over points and rounds is that of the variance.
@@ -129,15 +134,21 @@ def _light(scene: ll.Scene, spots: Array, *, seed: int, paths: int) -> tuple[Rou
     ), done
 
 
-def _eye(light: Measurement) -> Round:
-    points = light.goniometer.spot_h_deg.size
-    start, core = time.perf_counter(), time.process_time()
-    both = light.cross_check(spots=list(range(points)), pixels=EYE_PIXELS, samples=EYE_SAMPLES)
-    wall, core = time.perf_counter() - start, time.process_time() - core
-    share = np.full(points, 1.0 / points)
-    return Round(
-        cd=both.eye_cd, sigma=both.eye_standard_error_cd, core_s=share * core, wall_s=share * wall
-    )
+def _eye(scene: ll.Scene, light: Measurement, seed: int) -> Round:
+    world = assemble(scene, SpectralCarrier(scene.image.wavelength_range_nm, scene.image.observer))
+    gonio = light.goniometer
+    cd, sigma, core, wall = (np.zeros(gonio.spot_h_deg.size) for _ in range(4))
+    for at in range(gonio.spot_h_deg.size):
+        start, before = time.perf_counter(), time.process_time()
+        looking = Looking(
+            world, gonio, eye_method(scene), groups=len(light.groups), seed=seed, spots=[at]
+        )
+        looking.until(LOOKS, error=WANTED)
+        core[at], wall[at] = time.process_time() - before, time.perf_counter() - start
+        # Of the repetitions as they are, as for the light.
+        readings = looking.reading().xyz[..., 0, 1].sum(axis=1)
+        cd[at], sigma[at] = readings.mean(), readings.std(ddof=1) / len(readings) ** 0.5
+    return Round(cd=cd, sigma=sigma, core_s=core, wall_s=wall)
 
 
 def _peer(

@@ -161,7 +161,7 @@ def test_the_eye_sees_what_the_light_sends(lamp_of: Callable[..., Scene]) -> Non
             distance_m=distance,
             paths=1 << 19,
         )
-        check = found.cross_check(samples=16, pixels=64, eyes=4)
+        check = found.cross_check(looks=1 << 18)
         assert (np.abs(check.sigmas) < 3.5).all()
         assert (check.light_standard_error_cd < 0.02 * check.light_cd).all()
         assert (check.eye_standard_error_cd < 0.03 * check.eye_cd).all()

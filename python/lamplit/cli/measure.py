@@ -30,7 +30,8 @@ def measure(
         bool,
         typer.Option(
             "--cross-check",
-            help="Also measure the brightest test points by walks from the receiver, and compare.",
+            help="Also show the test points by walks from the light and from the receiver, "
+            "beside each other, and keep them.",
         ),
     ] = False,
 ) -> None:
@@ -70,6 +71,8 @@ def _tell(output: Path, results: Results, files: dict[str, str]) -> None:
         "paths": f"{results.paths / 1e6:.4g} million in {results.elapsed_s:.1f} s, "
         f"{results.paths / max(results.elapsed_s, 1e-9) / 1e6:.3g} million/s"
     }
+    if "test points" in results.geometry:
+        numbers["test points"] = results.geometry["test points"]
     if results.energy is not None:
         energy = results.energy
         numbers["flux"] = (

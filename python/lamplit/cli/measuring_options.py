@@ -108,7 +108,7 @@ class Wanted:
     production: bool = False
     seed: int | None = None
     assignments: Sequence[str] = ()
-    #: Whether it is to be measured from the receiver as well.
+    #: Whether both ways, from the light and from the receiver, are to be shown.
     cross_check: bool = False
 
     def load(self) -> Scene:
@@ -118,7 +118,7 @@ class Wanted:
             LamplitError: The scene or an option cannot be used.
         """
         from lamplit.cli.overrides import overrides, scene_file
-        from lamplit.engine.cross_check import check_visible
+        from lamplit.engine.looking import check_visible
         from lamplit.scene import load_scene
 
         changed = overrides(assignments=self.assignments, seed=self.seed)

@@ -15,8 +15,10 @@ from lamplit import _core
 from lamplit.engine.assembly import assemble
 from lamplit.engine.carrier import SpectralCarrier
 from lamplit.engine.light_sources import Laboratory, Light
+from lamplit.engine.looking import Looking, check_visible, eye_method
 from lamplit.engine.measurement import Measurement
 from lamplit.engine.measuring_run import ProgressCallback, Run
+from lamplit.engine.receiver_view import WIDEST_LENS_DEG
 from lamplit.engine.receivers import (
     Goniometer,
     Plane,
@@ -52,11 +54,18 @@ def measure(
     time_s: float | None = None,
     until: Callable[[Measurement], bool] | None = None,
     spectra: bool = False,
+    eye: bool = True,
     seed: int | None = None,
     threads: int | None = None,
     progress: ProgressCallback | None = None,
 ) -> Measurement:
     """Walk light from the lamp's sources and return its luminous intensity over directions.
+
+    Spots are read both ways: from the light, and by as many looks from the ``eye`` of the receiver
+    as there are paths of light, which is far more certain where a receiver is small.
+    `Measurement.observed` tells what the eye reads; `Measurement.cross_check` compares. The eye
+    reads nothing with ``eye`` of False, of receivers beyond 2°, of ``light``, ray files and endless
+    planes, and where the lamp reaches up to a receiver.
 
     ``spots`` (n, 2) are H and V in degrees of round receivers, ``grid`` the borders of cells along
     H and V (None: each degree over ±90°), ``plane`` a rectangle to light. ``distance_m`` and
@@ -64,7 +73,8 @@ def measure(
     ``light`` is walked instead of what shines in the scene. ``spectra`` keeps the spectrum of each
     cell of the grid.
 
-    ``error`` is the `Measurement.relative_error` to go down to, ``time_s`` the seconds to walk for,
+    ``error`` is the `Measurement.relative_error` to go down to, ``time_s`` the seconds to walk for
+    (half of them from the light, where an eye reads too),
     and ``until`` is asked after every round whether that is enough; with any of them, ``paths`` is
     the most. ``threads`` of None takes one per core: the result does not depend on it.
 
@@ -119,8 +129,32 @@ def measure(
         raise refused(str(fault), scene, goniometer, light) from fault
     groups = light_groups(dark) if light is None else (light.group,)
     about = {"goniometer": goniometer, "groups": groups, "scene": scene, "light": light}
-    run = Run(meter, goniometer, about | {"seed": seed, "threads": threads}, threads or 0)
+    looking = _looking(laboratory, light, groups, threads) if eye else None
+    about |= {"seed": seed, "threads": threads}
+    run = Run(meter, goniometer, about, threads or 0, looking)
     return run.until(paths, error, time_s, until, progress)
+
+
+def _looking(
+    laboratory: Laboratory, light: Light | None, groups: tuple[str, ...], threads: int | None
+) -> Looking | None:
+    """Return what reads the spots by the eye; None where it cannot see all their light."""
+    gonio, scene = laboratory.goniometer, laboratory.scene
+    is_lens = gonio.spot_h_deg.size > 0 and gonio.receiver_deg <= WIDEST_LENS_DEG
+    if light is not None or not is_lens:
+        return None
+    try:
+        check_visible(scene)
+        return Looking(
+            laboratory.world,
+            gonio,
+            eye_method(scene),
+            groups=len(groups),
+            seed=laboratory.seed,
+            threads=threads,
+        )
+    except LamplitError:
+        return None
 
 
 def light_method(scene: Scene) -> _core.PathMethod:

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     import xarray
 
     from lamplit.engine.cross_check import CrossCheck
+    from lamplit.engine.eye_reading import EyeReading
     from lamplit.engine.light_sources import Light
     from lamplit.scene import Scene
 
@@ -51,7 +52,7 @@ class Measurement:
     emitted_xyz: Array
     #: (b, g, 3), of the flux that leaves the lamp.
     out_xyz: Array
-    #: (b, g, p, 3), X, Y, Z of the intensity at the spots; Y in cd.
+    #: (b, g, p, 3), X, Y, Z of the intensity at the spots by the walks from the light; Y in cd.
     spot_xyz: Array
     #: (b, g, v, h, 3), mean intensity in the cells of the grid.
     grid_xyz: Array
@@ -74,6 +75,8 @@ class Measurement:
     scene: Scene
     light: Light | None
     seed: int
+    #: The spots by walks from the eye; None where they were read from the light alone.
+    eye: EyeReading | None = None
     threads: int | None = None
     statistics: Mapping[str, Any] = field(default_factory=dict[str, Any])
     elapsed_s: float = 0.0
@@ -110,25 +113,32 @@ class Measurement:
                 )
         return np.array([light.get(name, 0.0) for name in self.groups])
 
-    def observed(self, lit: Lit = None, *, name: str | None = None) -> Observed:
-        """Return what a goniometer reads of one function, a weighted sum of light groups."""
+    def observed(
+        self, lit: Lit = None, *, name: str | None = None, by: Literal["both", "light"] = "both"
+    ) -> Observed:
+        """Return what a goniometer reads of one function, a weighted sum of light groups.
+
+        Spots are read by the eye where it was asked and saw anything of a group, else ``by`` the
+        light, as the grid always is.
+        """
         weights = self.weights(lit)
-        spots = np.einsum("g,bgpi->bpi", weights, self.spot_xyz)
         cells = np.einsum("g,bgvhi->bvhi", weights, self.grid_xyz)
-        covariance = covariance_of_mean(spots)
         variance = variance_of_mean(cells[..., 1])
         for group, weight in enumerate(weights):
-            few = self._few_hits(group, self.spot_xyz[:, group], self.goniometer.spot_sr)
-            covariance += weight**2 * few
             of_cells = self.grid_xyz[:, group, ..., 1]
             spread, bound = self._let_out(group, of_cells, self.goniometer.cell_sr)
             variance += weight**2 * (bound - spread)
-        own = lit if isinstance(lit, str) else "all light" if lit is None else "+".join(lit)
+        eye = None if by == "light" else self.eye
+        spot_xyz, covariance = self._spots_by_light(weights, eye)
+        if eye is not None:
+            own, scatter = eye.observed(weights)
+            spot_xyz, covariance = spot_xyz + own, covariance + scatter
+        own_name = lit if isinstance(lit, str) else "all light" if lit is None else "+".join(lit)
         return Observed(
-            name=name or own,
+            name=name or own_name,
             spot_h_deg=self.goniometer.spot_h_deg,
             spot_v_deg=self.goniometer.spot_v_deg,
-            spot_xyz=spots.mean(axis=0),
+            spot_xyz=spot_xyz,
             spot_xyz_covariance=covariance,
             grid_h_edges_deg=self.goniometer.h_edges_deg,
             grid_v_edges_deg=self.goniometer.v_edges_deg,
@@ -136,6 +146,17 @@ class Measurement:
             grid_standard_error_cd=np.sqrt(variance),
             paths=self.paths,
         )
+
+    def _spots_by_light(self, weights: Array, eye: EyeReading | None) -> tuple[Array, Array]:
+        """Return X, Y, Z (p, 3) of what ``eye`` did not see, and their covariance (p, 3, 3)."""
+        shape = self.spot_xyz.shape[1:3]
+        left: Array = np.ones(shape) if eye is None else 1.0 - eye.sees
+        spots = np.einsum("g,gp,bgpi->bpi", weights, left, self.spot_xyz)
+        covariance = covariance_of_mean(spots)
+        for group, weight in enumerate(weights):
+            few = self._few_hits(group, self.spot_xyz[:, group], self.goniometer.spot_sr)
+            covariance += (weight**2 * left[group])[:, None, None] * few
+        return spots.mean(axis=0), covariance
 
     def _let_out(self, group: int, y: Array, solid_angle: Array | float) -> tuple[Array, Array]:
         """Return the variances of the mean of a group's Y (b, …): of the spread, and as a bound."""

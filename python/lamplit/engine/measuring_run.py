@@ -13,12 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lamplit import _core
+from lamplit.engine.looking import Looking
 from lamplit.engine.lumens import LumenLedger
 from lamplit.engine.measurement import Measurement
 from lamplit.engine.receivers import Goniometer
 
 Array = NDArray[np.float64]
-#: Called with the paths done and to do, a few times a second.
+#: Called with the paths done and to do, a few times a second. Where an eye reads too, half of each
+#: is a path from the light, half a look from the eye.
 ProgressCallback = Callable[[int, int], object]
 
 #: Paths where nothing says how many.
@@ -46,6 +48,8 @@ class Run:
     #: What a `Measurement` says of what was measured.
     about: Mapping[str, Any]
     threads: int
+    #: What reads the spots by the eye: one look for each path of light.
+    looking: Looking | None = None
     started: float = field(default_factory=time.perf_counter)
 
     def until(
@@ -66,11 +70,17 @@ class Run:
         most = min(math.ceil(most / _core.BATCHES), MOST_IN_BATCH)
         wanted = min(FIRST_ROUND, most) if is_open else most
         while True:
-            left = None if time_s is None else time_s - (time.perf_counter() - self.started)
             before = self.meter.paths_per_batch
+            share = 1.0 if self.looking is None else 0.5
+            left = None if time_s is None else share * (time_s - self._elapsed_s)
             interrupted = self.walk(wanted - before, left, progress, most)
             done = self.meter.paths_per_batch
-            is_over = done >= most or done < wanted or interrupted
+            if not interrupted:
+                # What is left of the time after the last walk is the eye's.
+                is_last = time_s is not None and paths is None and (not is_open or done < wanted)
+                interrupted = self._look(error, time_s, progress, most, is_open_ended=is_last)
+            is_late = time_s is not None and self._elapsed_s >= time_s
+            is_over = done >= most or done < wanted or interrupted or is_late
             if is_over and not is_open:
                 return self.result(complete=not interrupted, interrupted=interrupted)
             result = self.result(complete=False, interrupted=interrupted)
@@ -78,6 +88,38 @@ class Run:
             if reached or is_over:
                 return replace(result, complete=reached and not interrupted)
             wanted = min(most, self._next(done, result, error))
+
+    @property
+    def _elapsed_s(self) -> float:
+        return time.perf_counter() - self.started
+
+    def _look(
+        self,
+        error: float | None,
+        time_s: float | None,
+        progress: ProgressCallback | None,
+        most: int,
+        *,
+        is_open_ended: bool,
+    ) -> bool:
+        """Let the eye look once for each path done, or for the time left; return if interrupted."""
+        if self.looking is None:
+            return False
+        done = self.meter.paths_per_batch * _core.BATCHES
+        return self.looking.until(
+            None if is_open_ended else done,
+            error=error or 0.0,
+            deadline=None if time_s is None else self.started + time_s,
+            progress=lambda looks: self._tell(progress, done, looks, done, most),
+        )
+
+    def _tell(
+        self, progress: ProgressCallback | None, paths: int, looks: int, total: int, most: int
+    ) -> None:
+        """Tell how much is done of ``total`` paths, or of the ``most`` of every batch."""
+        if progress is not None:
+            shown = paths if self.looking is None else (paths + min(looks, paths)) // 2
+            progress(shown, total if most == MOST_IN_BATCH else most * _core.BATCHES)
 
     def _next(self, done: int, result: Measurement, error: float | None) -> int:
         """Return how many paths of each batch are wanted: twice as many, or as the error says."""
@@ -95,10 +137,10 @@ class Run:
         """
         before = self.meter.paths_per_batch * _core.BATCHES
 
+        looks = 0 if self.looking is None else self.looking.looks
+
         def tell(done: int, total: int) -> None:
-            if progress is not None:
-                is_open = most == MOST_IN_BATCH
-                progress(before + done, before + total if is_open else most * _core.BATCHES)
+            self._tell(progress, before + done, looks, before + total, most)
 
         if time_s is not None and time_s <= 0.0:
             return False
@@ -140,6 +182,7 @@ class Run:
             paths=meter.paths_per_batch * _core.BATCHES,
             ledgers=found,
             statistics=meter.statistics(),
+            eye=None if self.looking is None else self.looking.reading(),
             elapsed_s=time.perf_counter() - self.started,
             complete=complete,
             interrupted=interrupted,

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from lamplit.photometry.chance import variance_of_mean
 from lamplit.report.photometry.judged import judged
+from lamplit.report.photometry.progress import in_words
 from lamplit.report.photometry.results import EnergyFlow, FunctionResults, Results, Spectrum
 from lamplit.scene.rays import ray_notices
 
@@ -25,6 +26,7 @@ _HITS_IN_BAND = 30.0
 _CERTAIN = 0.2
 
 if TYPE_CHECKING:
+    from lamplit.engine.cross_check import CrossCheck
     from lamplit.engine.measurement import Measurement
     from lamplit.photometry.observed import Observed
     from lamplit.rules import Rule
@@ -63,6 +65,7 @@ def results_of(
         RuleError: A rule cannot be judged by it.
     """
     scene = measurement.scene
+    both = _both_ways(measurement)
     return Results(
         scene=scene.name,
         scene_hash=scene.scene_hash,
@@ -72,8 +75,8 @@ def results_of(
         functions=judged_functions(measurement, functions, production=production),
         energy=energy_of(measurement),
         spectra=_spectra(measurement),
-        geometry=_geometry(measurement),
-        notices=ray_file_notices(measurement),
+        geometry=_geometry(measurement, both),
+        notices=(*ray_file_notices(measurement), *_apart(both)),
         elapsed_s=measurement.elapsed_s,
         complete=measurement.complete,
     )
@@ -150,7 +153,8 @@ def _on_axis(measurement: Measurement, one: Asked) -> Spectrum | None:
         return None
     weights = measurement.weights(one.light or None)
     batches = np.einsum("g,bgn->bn", weights, measurement.spot_spectra_by_batch[:, :, int(at[0])])
-    seen = _observed(measurement, one.name, one.light)
+    # As certain as the walks from the light, which made the bands.
+    seen = measurement.observed(one.light or None, by="light")
     cd, error = float(seen.spot_cd[at[0]]), float(seen.spot_standard_error_cd[at[0]])
     about = Spectrum(f"{one.name} at HV", measurement.band_centres_nm, np.empty(0), "W/(sr nm)")
     return in_bands(about, batches, _hits(cd, error))
@@ -234,12 +238,40 @@ def ray_file_notices(measurement: Measurement) -> tuple[str, ...]:
     return (*ray_notices(measurement.scene), *coarse)
 
 
-def _geometry(measurement: Measurement) -> dict[str, str]:
+def _both_ways(measurement: Measurement) -> CrossCheck | None:
+    """Return the readings of the eye beside those of the light; None where no eye looked."""
+    eye = measurement.eye
+    return measurement.cross_check() if eye is not None and eye.looks.any() else None
+
+
+def _apart(both: CrossCheck | None) -> tuple[str, ...]:
+    """Return a notice where the eye and the light differ by more than chance lets them."""
+    if both is None or not both.is_apart.any():
+        return ()
+    apart = np.abs(both.sigmas)
+    at = int((apart / both.allowed).argmax())
+    notice = (
+        f"walks from the light and from the receiver differ by {apart[at]:.1f} σ at "
+        f"H {both.spot_h_deg[at]:g}°, V {both.spot_v_deg[at]:g}°: {both.light_cd[at]:.3g} and "
+        f"{both.eye_cd[at]:.3g} cd; smooth normals on a coarse mesh do that, or light that one of "
+        "them seldom finds"
+    )
+    return (notice,)
+
+
+def _geometry(measurement: Measurement, both: CrossCheck | None) -> dict[str, str]:
     gonio = measurement.goniometer
     distance = gonio.distance_m
     centre = ", ".join(f"{at:.1f}".replace("-", "−") for at in gonio.centre_mm)
-    return {
+    found = {
         "distance": "far field" if distance is None else f"{distance:g} m",
         "receiver": f"{gonio.receiver_deg:.3g}° full angle",
         "reference centre": f"({centre}) mm",
     }
+    if both is not None and measurement.eye is not None:
+        found["test points"] = (
+            f"{in_words(float(measurement.eye.looks.sum()))} looks from the receivers; the light "
+            f"reads the same but for {np.abs(both.sigmas).max():.1f} σ at most, of "
+            f"{both.light_cd.size} points"
+        )
+    return found
