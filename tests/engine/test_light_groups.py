@@ -97,7 +97,7 @@ def test_layers_are_kept_only_when_they_are_asked_for(scene_of: Callable[..., An
 
 
 def test_hall_has_no_layers(scene_of: Callable[..., Any]) -> None:
-    with pytest.raises(LamplitError, match="needs the method path, and this is hall"):
+    with pytest.raises(LamplitError, match="needs the method path or lit, and this is hall"):
         ll.render(lit_floor(scene_of, method="hall"), layers=True)
 
 

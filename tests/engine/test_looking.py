@@ -244,10 +244,10 @@ def test_an_error_is_reached_and_time_is_kept(lamp_of: Callable[..., Scene]) -> 
 
 def test_ctrl_c_keeps_what_was_seen(lamp_of: Callable[..., Scene]) -> None:
     def interrupt(done: int, total: int) -> None:
-        if done > 0.8 * total:
+        if done > 0.7 * total:
             raise KeyboardInterrupt
 
-    asked = FEW | {"paths": 1 << 19}
+    asked = FEW | {"paths": 1 << 21}
     with pytest.raises(MeasureInterrupted) as caught:
         ll.measure(lamp_of(disc(), block("clear")), spots=[(0.0, 0.0)], progress=interrupt, **asked)
     found = caught.value.measurement

@@ -239,7 +239,7 @@ def test_a_wide_lens_sees_a_floor_that_a_narrow_one_does_not(tmp_path: Path) -> 
 
 
 def test_a_grid_needs_a_square_number_of_samples_in_halls_method_alone(tmp_path: Path) -> None:
-    assert scene_of(tmp_path, image={"samples": 5}).image.method == "path"
+    assert scene_of(tmp_path, image={"samples": 5}).image.method == "auto"
     with pytest.raises(SceneError, match="square"):
         scene_of(tmp_path, image={"samples": 5, "method": "hall"})
 

@@ -103,7 +103,7 @@ def pupil_diameter_mm(luminance_cd_m2: float, field_deg2: float, age: float) -> 
     and a slope by age.
 
     >>> round(pupil_diameter_mm(100.0, 10.0, 28.58), 2)
-    4.73
+    5.74
     """
     power = (luminance_cd_m2 * field_deg2 / _HALF_CLOSED) ** 0.41
     young = 7.75 - 5.75 * power / (power + 2.0)

@@ -39,7 +39,7 @@ def tone_curve(light: ArrayLike, brightest: float) -> NDArray[np.float64]:
     become equal steps. Where M ≤ 1, all fits the display, and the curve is f(m) = m.
 
     >>> tone_curve([0.0, 0.1, 1.0, 10.0, 1e5], brightest=1e5).round(3).tolist()
-    [0.0, 0.1, 0.338, 0.47, 1.0]
+    [0.0, 0.1, 0.336, 0.474, 1.0]
     """
     m = np.maximum(np.asarray(light, dtype=np.float64), 0.0)
     rate = shoulder_rate(brightest)

@@ -9,9 +9,8 @@ from collections.abc import Iterator
 from types import TracebackType
 from typing import TYPE_CHECKING, NamedTuple, TextIO
 
-from lamplit.report.terminal_bar import terminal_bar
-
 from lamplit.printable import printable
+from lamplit.report.terminal_bar import terminal_bar
 
 if TYPE_CHECKING:
     from rich.progress import Progress as Bar
