@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 use super::light_film::LightFilm;
-use super::{Exposure, Rendering};
+use super::rendering::{Exposure, Rendering};
 use crate::film::Film;
 
 /// The most samples that a pixel takes before the next pixel has its turn.

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0 OR MIT
+//! [`Rendering`]: the films of a picture's parts, a first round of samples, and what it allots.
+
+use std::ops::Range;
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+use super::allocation::{Allocation, Pilot};
+use super::light_film::LightFilm;
+use super::pass::Pass;
+use super::settings::RenderSettings;
+use super::{Progress, Rendered};
+use crate::film::Film;
+use crate::scene::{Interior, Scene};
+use crate::transport::{Guide, Ledger, Part, Tally};
+
+/// A picture in the making.
+pub(super) struct Rendering<'a> {
+    pub scene: &'a Scene,
+    pub settings: &'a RenderSettings,
+    pub interior: Interior,
+    pub guide: Option<&'a Guide>,
+    /// Whether walks from lights show what they send through rough boundaries.
+    pub leaves_rough: bool,
+    pub progress: &'a Progress,
+    pub began: Instant,
+}
+
+/// A part of the light, and the film that gathers it.
+pub(super) struct Exposure {
+    pub part: Part,
+    pub film: Film,
+    /// How many samples each pixel takes in all, once that is decided.
+    pub limit: Option<Allocation>,
+}
+
+impl Rendering<'_> {
+    /// Expose all films, and add them up.
+    pub fn run(&self, shown: Option<LightFilm<'_>>) -> Rendered {
+        let samples = self.settings.samples.clone();
+        let new = |part: &Part| Exposure {
+            part: *part,
+            film: self.settings.new_film(self.scene),
+            limit: None,
+        };
+        let mut exposures: Vec<Exposure> = self.settings.parts().iter().map(new).collect();
+        let mut tally = Tally::new(self.scene.bodies.len());
+        if let Some(counts) = &self.settings.counts {
+            for exposure in &mut exposures {
+                exposure.limit = Some(Allocation::given(counts.clone()));
+            }
+            self.expose(&mut exposures, &mut tally, samples.start..u32::MAX, None, None);
+            return Rendered::of(exposures, None, tally);
+        }
+        let pilot_samples = self.pilot_samples();
+        if !self.settings.allots() || pilot_samples == samples.len() as u32 {
+            self.expose(&mut exposures, &mut tally, samples, self.settings.time_budget, None);
+            return Rendered::of(exposures, None, tally);
+        }
+        let eyes = Instant::now();
+        let first = samples.start..samples.start + pilot_samples;
+        let rest = self.expose_first(&mut exposures, &mut tally, first);
+        let pilot_samples = rest - samples.start;
+        let mut shown = shown;
+        if !self.progress.is_cancelled() {
+            let affordable = self.affordable(pilot_samples, eyes.elapsed());
+            let paths = self.allocate(&mut exposures, shown.as_mut(), affordable);
+            if let Some(shown) = &mut shown {
+                shown.begin_anew();
+                shown.walk(LightFilm::per_batch(paths), self.progress);
+            }
+            self.expose(&mut exposures, &mut tally, rest..u32::MAX, None, shown.as_ref());
+        }
+        Rendered::of(exposures, shown, tally)
+    }
+
+    /// How many samples of every pixel the first round has: a quarter of all where their number is
+    /// known. A picture of one pixel has no neighbours to learn from.
+    fn pilot_samples(&self) -> u32 {
+        let samples = self.settings.samples.len() as u32;
+        let is_open = self.settings.target_error.is_some() || self.settings.time_budget.is_some();
+        let wanted = if is_open { Pilot::USUAL } else { samples / 4 };
+        if self.pixels() == 1 {
+            samples
+        } else {
+            wanted.clamp(Pilot::FEWEST, Pilot::MOST).min(samples)
+        }
+    }
+
+    /// The first round, as far as a quarter of the time allows; the number of the sample after it.
+    fn expose_first(
+        &self,
+        exposures: &mut [Exposure],
+        tally: &mut Tally,
+        samples: Range<u32>,
+    ) -> u32 {
+        // No spread is known of fewer than two.
+        let second = samples.end.min(samples.start + 2);
+        self.expose(exposures, tally, samples.start..second, None, None);
+        let quarter = self.settings.time_budget.map(|budget| {
+            (budget / 4).saturating_sub(self.began.elapsed()).max(Duration::from_nanos(1))
+        });
+        self.expose(exposures, tally, second..samples.end, quarter, None).max(second)
+    }
+
+    /// How many samples of every pixel can be had, if those of the first round took so long.
+    fn affordable(&self, pilot_samples: u32, took: Duration) -> f64 {
+        let most = self.settings.samples.len() as f64;
+        self.settings.time_budget.map_or(most, |budget| {
+            let left = budget.as_secs_f64() - self.began.elapsed().as_secs_f64();
+            let more = (left / took.as_secs_f64()).max(0.0);
+            most.min(f64::from(pilot_samples) * (1.0 + more))
+        })
+    }
+
+    /// Allot samples, or time, as the first round says; how many walks from lights there are to be.
+    fn allocate(
+        &self,
+        exposures: &mut [Exposure],
+        shown: Option<&mut LightFilm<'_>>,
+        affordable: f64,
+    ) -> f64 {
+        let films: Vec<&Film> = exposures.iter().map(|exposure| &exposure.film).collect();
+        let mut pilot = Pilot::of(&films);
+        if let Some(shown) = shown {
+            let segments = films.iter().flat_map(|film| &film.segments).sum::<u64>();
+            let mut more = LightFilm::FEWEST;
+            while shown.segments() < segments / 4 && !self.progress.is_cancelled() {
+                shown.walk(more, self.progress);
+                more = shown.paths();
+            }
+            pilot.share_with(shown.trial(&pilot.tone));
+        }
+        let (allocations, paths) = pilot.allocate(affordable, self.settings.target_error);
+        for (exposure, allocation) in exposures.iter_mut().zip(allocations) {
+            exposure.limit = Some(allocation);
+        }
+        paths
+    }
+
+    fn pixels(&self) -> u64 {
+        u64::from(self.settings.width) * u64::from(self.settings.height)
+    }
+
+    /// Take samples of every pixel on all films, as many of them as are allotted or as the time allows.
+    fn expose(
+        &self,
+        exposures: &mut [Exposure],
+        tally: &mut Tally,
+        samples: Range<u32>,
+        time_budget: Option<Duration>,
+        shown: Option<&LightFilm<'_>>,
+    ) -> u32 {
+        let started = Instant::now();
+        let most = |exposure: &Exposure| {
+            let limit = exposure.limit.as_ref();
+            limit.map_or(samples.end, |limit| {
+                self.settings.samples.start.saturating_add(limit.most())
+            })
+        };
+        let end = exposures.iter().map(most).max().unwrap_or(samples.end).min(samples.end);
+        let all = |exposure: &Exposure| {
+            let each = self.pixels() * u64::from(end.saturating_sub(samples.start));
+            exposure.limit.as_ref().map_or(each, Allocation::total)
+        };
+        self.progress.total.store(exposures.iter().map(all).sum(), Ordering::Relaxed);
+        let (mut next, mut length) = (samples.start, 1);
+        let is_counted = !self.settings.allots() && time_budget.is_none();
+        let each = is_counted.then_some(samples.len() as u32);
+        while next < end && !self.progress.is_cancelled() {
+            let until = end.min(next + length);
+            let pass_started = Instant::now();
+            let Self { scene, settings, interior, guide, leaves_rough, progress, .. } = *self;
+            for Exposure { part, film, limit } in &mut *exposures {
+                let (part, limit) = (*part, limit.as_ref());
+                let samples = next..until;
+                let pass = Pass {
+                    scene,
+                    settings,
+                    interior,
+                    part,
+                    samples,
+                    limit,
+                    leaves_rough,
+                    guide,
+                    progress,
+                };
+                let mut own = pass.run(film);
+                if part == Part::Specular {
+                    // Its walks end half-way; those of the other part go all the way.
+                    own.ledger = Ledger::new(scene.bodies.len());
+                }
+                tally.add(&own);
+            }
+            next = until;
+            self.progress.viewfinder.show(|| self.snapshot(exposures, shown, each));
+            length = self.progress.viewfinder.next_length(length, pass_started.elapsed());
+            if let Some(budget) = time_budget {
+                let spent = started.elapsed().as_secs_f64();
+                let left = (budget.as_secs_f64() - spent) / spent;
+                let affordable = (left * f64::from(next - samples.start)) as u32;
+                if affordable == 0 {
+                    break;
+                }
+                // Half of what is left at a time: how long a sample takes is only an estimate.
+                length = length.min(affordable.div_ceil(2));
+            }
+        }
+        next.min(end)
+    }
+}
+
+impl Rendered {
+    /// The sum of all parts.
+    fn of(exposures: Vec<Exposure>, shown: Option<LightFilm<'_>>, mut tally: Tally) -> Self {
+        let layers = exposures[0].film.layers;
+        let mut films: Vec<Film> = exposures.into_iter().map(|exposure| exposure.film).collect();
+        if let Some(shown) = shown {
+            films.push(shown.film(layers));
+            tally.eye_rays += shown.segments();
+        }
+        Self { film: Film::sum(films), tally }
+    }
+}
