@@ -12,6 +12,9 @@ from lamplit.photometry.chance import covariance_of_mean, let_out, variance_of_m
 
 Array = NDArray[np.float64]
 
+#: With fewer looks from a spot, on average, where light is seen is not known well enough yet.
+_FEWEST_LOOKS = 1 << 14
+
 
 @dataclass(frozen=True, eq=False)
 class EyeReading:
@@ -21,6 +24,14 @@ class EyeReading:
     xyz: Array
     #: (p,), looks at the lamp from each spot; 0 where there was no time for any.
     looks: NDArray[np.int64]
+
+    @property
+    def is_enough(self) -> bool:
+        """Whether the looks are so many that they tell more than walks from the light.
+
+        By their number alone: whoever chose by what was seen would be biased.
+        """
+        return bool(self.looks.mean() >= _FEWEST_LOOKS)
 
     @property
     def sees(self) -> Array:

@@ -118,8 +118,8 @@ class Measurement:
     ) -> Observed:
         """Return what a goniometer reads of one function, a weighted sum of light groups.
 
-        Spots are read by the eye where it was asked and saw anything of a group, else ``by`` the
-        light, as the grid always is.
+        Spots are read by the eye where it looked often enough and saw anything of a group, else
+        ``by`` the light, as the grid always is.
         """
         weights = self.weights(lit)
         cells = np.einsum("g,bgvhi->bvhi", weights, self.grid_xyz)
@@ -128,7 +128,7 @@ class Measurement:
             of_cells = self.grid_xyz[:, group, ..., 1]
             spread, bound = self._let_out(group, of_cells, self.goniometer.cell_sr)
             variance += weight**2 * (bound - spread)
-        eye = None if by == "light" else self.eye
+        eye = self.eye if by == "both" and self.eye and self.eye.is_enough else None
         spot_xyz, covariance = self._spots_by_light(weights, eye)
         if eye is not None:
             own, scatter = eye.observed(weights)
