@@ -2,7 +2,7 @@
 //! `Render`: what a rendering brought, as arrays.
 
 use lamplit_core::film::PixelSums;
-use lamplit_core::render::Rendered;
+use lamplit_core::render::{Found, Rendered};
 use lamplit_core::transport::Tally;
 use numpy::{PyArray2, PyArray3, PyArray4};
 use pyo3::prelude::*;
@@ -97,6 +97,22 @@ impl Render {
         shares.set_item("chance", balance.chance)?;
         shares.set_item("gap", balance.gap())?;
         Ok(Some(shares))
+    }
+
+    /// The parts of the mean luminance in cd/m², by how they were found: `by_eye`; or `specular`,
+    /// `scattered` and `shown_by_lights`.
+    fn found<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let parts = PyDict::new(py);
+        for (how, luminance) in &self.rendered.found {
+            let name = match how {
+                Found::ByEye => "by_eye",
+                Found::Specular => "specular",
+                Found::Scattered => "scattered",
+                Found::ShownByLights => "shown_by_lights",
+            };
+            parts.set_item(name, luminance)?;
+        }
+        Ok(parts)
     }
 
     /// The counts of the tally, and lost rays by body and cause.

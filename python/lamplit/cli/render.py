@@ -191,9 +191,24 @@ def _tell(output: Path, image: Image, numbers: dict[str, Any], contents: dict[st
     if speed["rays_per_s"]:
         millions = [speed[name] / 1e6 for name in ("rays_per_s", "paths_per_s")]
         rows["speed"] = f"{millions[0]:.3g} million rays/s, {millions[1]:.3g} million paths/s"
+    if (found := _found_line(image.statistics.get("found_cd_m2", {}))) is not None:
+        rows["how light was found"] = found
     if image.ledger is not None:
         rows["where the walks ended"] = _ledger_line(image.ledger)
     show_results(image, rows, output, contents)
+
+
+def _found_line(found: dict[str, float]) -> str | None:
+    """Return the shares of the luminance by how they were found; None where there is but one way."""
+    words = {
+        "specular": "in mirrors and through glass",
+        "scattered": "scattered",
+        "shown_by_lights": "through rough covers, from the lights",
+    }
+    total = sum(found.values())
+    if len(found) < 2 or total <= 0.0:
+        return None
+    return ", ".join(f"{words[how]} {100 * part / total:.2g} %" for how, part in found.items())
 
 
 def _ledger_line(ledger: Ledger) -> str:

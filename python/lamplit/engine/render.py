@@ -188,7 +188,9 @@ def expose(
         scene=scene,
         method=settled.method,
         colour=stage.colour,
-        statistics=outcome.statistics() | timings | {"geometry_bytes": world.memory_bytes},
+        statistics=outcome.statistics()
+        | timings
+        | {"geometry_bytes": world.memory_bytes, "found_cd_m2": outcome.found()},
         elapsed_s=time.perf_counter() - started,
         notices=stage.notices,
         complete=not outcome.interrupted,

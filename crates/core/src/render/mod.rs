@@ -25,6 +25,7 @@ use rendering::Rendering;
 pub use features::{features, Features};
 pub use learning::learn;
 pub use photometer::{Batch, MeasureError, Photometer, BATCHES};
+pub use rendering::Found;
 pub use settings::{Method, RenderSettings, DEEPEST};
 pub use snapshot::{Outlook, Snapshot, Viewfinder};
 
@@ -85,6 +86,8 @@ pub struct Rendered {
     pub film: Film,
     /// What happened to the rays.
     pub tally: Tally,
+    /// The parts of its mean luminance in cd/m², by how they were found.
+    pub found: Vec<(Found, f64)>,
 }
 
 /// Render `scene`.

@@ -214,11 +214,47 @@ impl Rendered {
     /// The sum of all parts.
     fn of(exposures: Vec<Exposure>, shown: Option<LightFilm<'_>>, mut tally: Tally) -> Self {
         let layers = exposures[0].film.layers;
-        let mut films: Vec<Film> = exposures.into_iter().map(|exposure| exposure.film).collect();
+        let mut found = Vec::new();
+        let mut films = Vec::new();
+        for Exposure { part, film, .. } in exposures {
+            found.push((Found::by_eye(part), mean_luminance(&film)));
+            films.push(film);
+        }
         if let Some(shown) = shown {
-            films.push(shown.film(layers));
+            let film = shown.film(layers);
+            found.push((Found::ShownByLights, mean_luminance(&film)));
+            films.push(film);
             tally.eye_rays += shown.segments();
         }
-        Self { film: Film::sum(films), tally }
+        Self { film: Film::sum(films), tally, found }
     }
+}
+
+/// How the light of a picture was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Found {
+    /// By walks from the eye, of any kind.
+    ByEye,
+    /// By walks from the eye, in mirrors and through smooth glass alone.
+    Specular,
+    /// By walks from the eye that were turned at random.
+    Scattered,
+    /// By walks from lights, which show it to the camera.
+    ShownByLights,
+}
+
+impl Found {
+    fn by_eye(part: Part) -> Self {
+        match part {
+            Part::All => Self::ByEye,
+            Part::Specular => Self::Specular,
+            Part::Scattered => Self::Scattered,
+        }
+    }
+}
+
+/// The mean luminance of a film's pixels, in cd/m².
+fn mean_luminance(film: &Film) -> f64 {
+    let sum = film.pixels.iter().map(|pixel| pixel.mean()[1]).sum::<f64>();
+    sum / film.pixels.len().max(1) as f64
 }

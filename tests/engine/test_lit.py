@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: Apache-2.0 OR MIT
+"""The method lit: chosen where an object shines, and the same picture as path's."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+import lamplit as ll
+
+Table = dict[str, Any]
+
+
+def bulb(scene_of: Callable[..., Any], *, roughness: float = 0.0, **image: Any) -> Any:
+    """Return a small lamp inside a glass ball above a grey floor, in a dim surround."""
+    glass = {"kind": "dielectric", "refractive_index": 1.5, "roughness": roughness}
+    shining: Table = {
+        "name": "filament",
+        "kind": "sphere",
+        "centre_mm": [0.0, 2.0, 0.0],
+        "radius_mm": 1.0,
+        "material": "black-abs",
+        "emission": {"source": "A", "luminance_cd_m2": 1e5},
+    }
+    ball = {"name": "ball", "kind": "sphere", "centre_mm": [0.0, 2.0, 0.0], "radius_mm": 3.0}
+    floor = {"name": "floor", "kind": "plane", "point_mm": [0, -6, 0], "normal": [0, 1, 0]}
+    return scene_of(
+        camera={
+            "kind": "orthographic",
+            "position_mm": [0.0, 60.0, 100.0],
+            "target_mm": [0.0, 0.0, 0.0],
+            "height_mm": 30.0,
+        },
+        image={"method": "auto", "width": 12, "height": 10, "samples": 64} | image,
+        background={"kind": "constant", "source": "E", "luminance_cd_m2": 1.0},
+        materials={"glass": glass},
+        objects=[shining, ball | {"material": "glass"}, floor | {"material": "grey-18"}],
+    )
+
+
+@pytest.mark.parametrize("roughness", [0.0, 0.3])
+def test_lit_and_path_make_the_same_picture(scene_of: Callable[..., Any], roughness: float) -> None:
+    scene = bulb(scene_of, roughness=roughness)
+    lit = ll.render(scene, samples=512)
+    path = ll.render(scene, method="path", samples=2048)
+    assert lit.method == "lit"
+    totals = [image.xyz[..., 1].mean() for image in (lit, path)]
+    sigmas = [np.sqrt((i.xyz_standard_error[..., 1] ** 2).sum()) / 120 for i in (lit, path)]
+    apart = abs(totals[0] - totals[1]) / np.hypot(*sigmas)
+    assert apart < 4.0, (totals, sigmas)
+    assert sigmas[0] < 0.03 * totals[0]
+
+
+def test_the_parts_of_a_lit_picture_are_told_and_add_up(scene_of: Callable[..., Any]) -> None:
+    image = ll.render(bulb(scene_of, roughness=0.3))
+    found = image.statistics["found_cd_m2"]
+    assert set(found) == {"specular", "scattered", "shown_by_lights"}
+    assert sum(found.values()) == pytest.approx(image.xyz[..., 1].mean(), rel=1e-12)
+    assert found["shown_by_lights"] > 0.0
+    smooth = ll.render(bulb(scene_of)).statistics["found_cd_m2"]
+    assert set(smooth) == {"specular", "scattered"}
+    path = ll.render(bulb(scene_of), method="path").statistics["found_cd_m2"]
+    assert set(path) == {"by_eye"}
+
+
+def test_auto_takes_path_where_no_object_shines(scene_of: Callable[..., Any]) -> None:
+    dark = bulb(scene_of, samples=1)
+    objects = tuple(thing for thing in dark.objects if thing.emission is None)
+    assert ll.render(dark.changed(objects=objects)).method == "path"
+    assert ll.render(dark).method == "lit"
+
+
+def test_a_lit_picture_does_not_depend_on_threads_and_does_on_its_seed(
+    scene_of: Callable[..., Any],
+) -> None:
+    scene = bulb(scene_of, roughness=0.3, samples=24)
+    one = ll.render(scene, threads=1).xyz
+    assert np.array_equal(one, ll.render(scene, threads=3).xyz)
+    assert not np.array_equal(one, ll.render(bulb(scene_of, roughness=0.3, samples=24, seed=2)).xyz)
