@@ -35,9 +35,9 @@ fn a_floor_under_a_bulb_is_as_bright_as_its_closed_form() {
     let illuminance = flux / (4.0 * PI) * (1.0 - r) / (d2 * 1e-6) * (50.0 / d2.sqrt());
     let expected = rho * illuminance / PI;
     let scene = bulb(flux, n, rho);
-    let guided = Take::lit(1 << 11, USUAL).luminance(&scene);
+    let guided = Take::lit(1 << 12, USUAL).luminance(&scene);
     guided.is(expected, 3e-3);
-    let blind = Take::of(1 << 11, USUAL).luminance(&scene);
+    let blind = Take::of(1 << 12, USUAL).luminance(&scene);
     assert!(blind.sigma > 20.0 * guided.sigma, "{blind:?} {guided:?}");
 }
 

@@ -37,8 +37,8 @@ const TO_LEARN: u64 = 0x2545_F491_4F6C_DD1D;
 /// Walks that learn are independent of threads in so many batches.
 const BATCHES: u64 = 32;
 /// How many arrivals are enough, and after how many segments there is an end of it.
-const ENOUGH: usize = 1 << 18;
-const MOST_SEGMENTS: u64 = 1 << 22;
+const ENOUGH: usize = 1 << 17;
+const MOST_SEGMENTS: u64 = 1 << 21;
 /// The most arrivals of a region, and the fewest that one can learn from.
 const MOST: usize = 400;
 const FEWEST: usize = 16;
