@@ -199,7 +199,7 @@ def _tell(output: Path, image: Image, numbers: dict[str, Any], contents: dict[st
 
 
 def _found_line(found: dict[str, float]) -> str | None:
-    """Return the shares of the luminance by how they were found; None where there is but one way."""
+    """Return the shares of the luminance by how they were found; None where one way found all."""
     words = {
         "specular": "in mirrors and through glass",
         "scattered": "scattered",
