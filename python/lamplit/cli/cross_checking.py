@@ -59,7 +59,7 @@ def _show(both: CrossCheck) -> None:
             cd(float(both.light_cd[at])),
             spread(2.0 * float(both.light_standard_error_cd[at])),
             cd(float(both.eye_cd[at])),
-            spread(2.0 * float(both.eye_standard_error_cd[at])),
+            spread(2.0 * float(both.eye_standard_error_cd[at])) if both.eye_cd[at] else "none seen",
             f"{abs(apart):.1f} σ",
         )
     console.print(table)
