@@ -106,6 +106,11 @@ impl Pilot {
         (allocations.collect(), paths)
     }
 
+    /// How many walks from lights there are at a scale.
+    fn light_paths(&self, scale: f64) -> f64 {
+        self.light.as_ref().map_or(0.0, |light| scale * (light.variance / light.cost).sqrt())
+    }
+
     /// The scale of the samples for the pixels of one colour.
     fn scale(&self, of_colour: usize, mean_samples: f64, target: Option<f64>) -> f64 {
         let all = 0..self.films[0].noise.len();
@@ -141,13 +146,6 @@ impl Pilot {
             }
         }
         high
-    }
-}
-
-impl Pilot {
-    /// How many walks from lights there are at a scale.
-    fn light_paths(&self, scale: f64) -> f64 {
-        self.light.as_ref().map_or(0.0, |light| scale * (light.variance / light.cost).sqrt())
     }
 }
 

@@ -34,6 +34,8 @@ pub(super) struct LightFilm<'a> {
     batches: Vec<Batch>,
     /// The first path of every batch.
     first: u32,
+    /// How many light groups have sums of their own; one sum is for all where nobody asks for layers.
+    groups: usize,
 }
 
 /// One repetition.
@@ -55,6 +57,8 @@ pub(super) struct LightTrial {
 impl<'a> LightFilm<'a> {
     /// The paths of each batch that are walked before anything is told of them.
     pub const FEWEST: u32 = 64;
+    /// The most of them.
+    pub const MOST_OF_TRIAL: u32 = 1 << 14;
 
     /// Nothing shown yet.
     ///
@@ -69,8 +73,9 @@ impl<'a> LightFilm<'a> {
         let screen = Screen { width: settings.width, height: settings.height };
         let walk = LightWalk::new(scene, source, path.from_lights())?.shown_on(screen);
         let pixels = settings.width as usize * settings.height as usize;
-        let batch = Batch { paths: 0, segments: 0, sums: vec![[0.0; 3]; pixels * scene.groups] };
-        Ok(Self { scene, walk, settings, batches: vec![batch; BATCHES], first: 0 })
+        let groups = if settings.layers { scene.groups } else { 1 };
+        let batch = Batch { paths: 0, segments: 0, sums: vec![[0.0; 3]; pixels * groups] };
+        Ok(Self { scene, walk, settings, batches: vec![batch; BATCHES], first: 0, groups })
     }
 
     /// Forget what was shown, and go on with other walks.
@@ -84,12 +89,12 @@ impl<'a> LightFilm<'a> {
 
     /// Walk `more` paths of every batch, unless it is cancelled.
     pub fn walk(&mut self, more: u32, progress: &Progress) {
-        let Self { scene, walk, settings, batches, first } = self;
+        let Self { scene, walk, settings, batches, first, groups } = self;
         let mut left = more;
         while left > 0 && !progress.is_cancelled() {
             let paths = left.min(ROUND);
             batches.par_iter_mut().enumerate().for_each(|(number, batch)| {
-                batch.add(scene, walk, settings, number as u64, (*first, paths));
+                batch.add((scene, walk, settings), number as u64, (*first, paths), *groups);
             });
             left -= paths;
         }
@@ -130,7 +135,7 @@ impl<'a> LightFilm<'a> {
     /// The picture, with sums for `layers` light groups: every batch is one sample of each pixel.
     pub fn film(&self, layers: usize) -> Film {
         let mut film = Film::new(self.settings.width, self.settings.height, 0, layers);
-        let groups = self.scene.groups;
+        let groups = self.groups;
         for batch in self.batches.iter().filter(|batch| batch.paths > 0) {
             let mean = |sum: &[f64; 3]| sum.map(|value| value / f64::from(batch.paths));
             for (pixel, sums) in batch.sums.chunks_exact(groups).enumerate() {
@@ -152,11 +157,10 @@ impl Batch {
     /// Walk paths `first` and on, after those that were walked, and add what they show.
     fn add(
         &mut self,
-        scene: &Scene,
-        walk: &LightWalk<'_>,
-        settings: &RenderSettings,
+        (scene, walk, settings): (&Scene, &LightWalk<'_>, &RenderSettings),
         number: u64,
         (first, paths): (u32, u32),
+        groups: usize,
     ) {
         let mut tally = Tally::new(scene.bodies.len());
         let mut ledgers = vec![Ledger::new(scene.bodies.len()); scene.groups];
@@ -170,8 +174,9 @@ impl Batch {
                 };
                 if part.flux.is_radiance() {
                     let xyz = scene.tristimulus(part.flux, part.wavelengths);
+                    let group = part.group.min(groups - 1);
                     spread(settings, place, |pixel, weight| {
-                        let sum = &mut sums[pixel * scene.groups + part.group];
+                        let sum = &mut sums[pixel * groups + group];
                         *sum = [0, 1, 2].map(|i| sum[i] + weight * xyz[i]);
                     });
                 }

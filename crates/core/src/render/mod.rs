@@ -130,7 +130,8 @@ fn light_film<'a>(
     let Method::Lit(path) = settings.method else {
         return None;
     };
-    let is_for_it = settings.allots() && settings.bands_per_lane == 0 && scene.has_rough_glass();
+    let is_for_it =
+        settings.first_round().is_some() && settings.bands_per_lane == 0 && scene.has_rough_glass();
     is_for_it.then(|| LightFilm::new(scene, source, path, settings).ok()).flatten()
 }
 

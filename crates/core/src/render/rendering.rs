@@ -52,11 +52,10 @@ impl Rendering<'_> {
             self.expose(&mut exposures, &mut tally, samples.start..u32::MAX, None, None);
             return Rendered::of(exposures, None, tally);
         }
-        let pilot_samples = self.pilot_samples();
-        if !self.settings.allots() || pilot_samples == samples.len() as u32 {
+        let Some(pilot_samples) = self.settings.first_round() else {
             self.expose(&mut exposures, &mut tally, samples, self.settings.time_budget, None);
             return Rendered::of(exposures, None, tally);
-        }
+        };
         let eyes = Instant::now();
         let first = samples.start..samples.start + pilot_samples;
         let rest = self.expose_first(&mut exposures, &mut tally, first);
@@ -72,19 +71,6 @@ impl Rendering<'_> {
             self.expose(&mut exposures, &mut tally, rest..u32::MAX, None, shown.as_ref());
         }
         Rendered::of(exposures, shown, tally)
-    }
-
-    /// How many samples of every pixel the first round has: a quarter of all where their number is
-    /// known. A picture of one pixel has no neighbours to learn from.
-    fn pilot_samples(&self) -> u32 {
-        let samples = self.settings.samples.len() as u32;
-        let is_open = self.settings.target_error.is_some() || self.settings.time_budget.is_some();
-        let wanted = if is_open { Pilot::USUAL } else { samples / 4 };
-        if self.pixels() == 1 {
-            samples
-        } else {
-            wanted.clamp(Pilot::FEWEST, Pilot::MOST).min(samples)
-        }
     }
 
     /// The first round, as far as a quarter of the time allows; the number of the sample after it.
@@ -124,10 +110,13 @@ impl Rendering<'_> {
         let mut pilot = Pilot::of(&films);
         if let Some(shown) = shown {
             let segments = films.iter().flat_map(|film| &film.segments).sum::<u64>();
-            let mut more = LightFilm::FEWEST;
-            while shown.segments() < segments / 4 && !self.progress.is_cancelled() {
-                shown.walk(more, self.progress);
-                more = shown.paths();
+            shown.walk(LightFilm::FEWEST, self.progress);
+            // Light that is walled in where it starts takes no segments at all.
+            let is_short = |shown: &LightFilm<'_>| {
+                shown.segments() < segments / 4 && shown.paths() < LightFilm::MOST_OF_TRIAL
+            };
+            while is_short(shown) && !self.progress.is_cancelled() {
+                shown.walk(shown.paths(), self.progress);
             }
             pilot.share_with(shown.trial(&pilot.tone));
         }
@@ -139,7 +128,7 @@ impl Rendering<'_> {
     }
 
     fn pixels(&self) -> u64 {
-        u64::from(self.settings.width) * u64::from(self.settings.height)
+        self.settings.pixels()
     }
 
     /// Take samples of every pixel on all films, as many of them as are allotted or as the time allows.

@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::Duration;
 
+use super::allocation::Pilot;
 use super::RenderError;
 use crate::film::Film;
 use crate::sampling::{PixelFilter, PixelSequence};
@@ -85,9 +86,24 @@ impl RenderSettings {
         Ok(())
     }
 
-    /// Whether samples are allotted by what a first round shows.
+    /// Whether samples are allotted by what a first round shows, if there is one.
     pub(super) fn allots(&self) -> bool {
         self.adaptive && self.counts.is_none()
+    }
+
+    /// How many samples of every pixel the first round has, if what comes after it is allotted by it: a
+    /// quarter of all where their number is known. A picture of one pixel has no neighbours to learn
+    /// from, and a round that takes all samples leaves none to allot.
+    pub(super) fn first_round(&self) -> Option<u32> {
+        let samples = self.samples.len() as u32;
+        let is_open = self.target_error.is_some() || self.time_budget.is_some();
+        let wanted = if is_open { Pilot::USUAL } else { samples / 4 };
+        let first = wanted.clamp(Pilot::FEWEST, Pilot::MOST);
+        (self.allots() && self.pixels() > 1 && first < samples).then_some(first)
+    }
+
+    pub(super) fn pixels(&self) -> u64 {
+        u64::from(self.width) * u64::from(self.height)
     }
 
     /// What is exposed by itself, each on a film of its own.

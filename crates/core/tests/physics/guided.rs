@@ -196,3 +196,43 @@ fn walks_that_bring_no_light_end_early_and_a_few_stand_for_all_in_the_ledger() {
     let balance = rendered.tally.ledger.balance().unwrap();
     assert!(balance.gap().abs() < 1e-9 && balance.chance.abs() < 0.1, "{balance:?}");
 }
+
+#[test]
+fn the_fewest_samples_show_the_light_behind_a_rough_cover_too() {
+    // So few that nothing is allotted: all of the light is the eye's then.
+    let scene = frosted(Projection::Pinhole { field_of_view_deg: 24.0 });
+    let mean = |samples: u32, adaptive: bool, seed: u64| {
+        let settings = RenderSettings {
+            width: 24,
+            height: 16,
+            samples: 0..samples,
+            adaptive,
+            seed,
+            bands_per_lane: 0,
+            ..Take::lit(1, USUAL).settings()
+        };
+        let film = render(&scene, &settings, &Progress::default()).unwrap().film;
+        film.pixels.iter().map(|pixel| pixel.mean()[1]).sum::<f64>() / 384.0
+    };
+    let wanted = mean(256, false, 1);
+    let few: Vec<f64> = (0..16).map(|seed| mean(4, true, seed) / wanted).collect();
+    Estimate::of(few.iter()).is(1.0, 0.1);
+}
+
+#[test]
+fn a_lamp_that_is_walled_in_ends_its_walks() {
+    let mut world = World::dark();
+    let lamp = world.add(matt(0.0), disc(DVec3::ZERO, DVec3::Y, 1.0));
+    world.shine(lamp, Strength::Flux(flat(1.0)), 1);
+    world.add(matt(0.5), cuboid(DVec3::splat(-3.0), DVec3::splat(3.0)));
+    world.add_rough(
+        glass(1.5),
+        0.3,
+        cuboid(DVec3::new(4.0, -3.0, -3.0), DVec3::new(6.0, 3.0, 3.0)),
+    );
+    let scene = world.along(DVec3::Y * 1e2, -DVec3::Y);
+    let settings =
+        RenderSettings { adaptive: true, bands_per_lane: 0, ..Take::lit(16, USUAL).settings() };
+    let film = render(&scene, &settings, &Progress::default()).unwrap().film;
+    assert!(film.pixels.iter().all(|pixel| pixel.mean() == [0.0; 3]));
+}

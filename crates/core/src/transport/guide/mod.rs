@@ -36,9 +36,11 @@ use tree::Tree;
 const TO_LEARN: u64 = 0x2545_F491_4F6C_DD1D;
 /// Walks that learn are independent of threads in so many batches.
 const BATCHES: u64 = 32;
-/// How many arrivals are enough, and after how many segments there is an end of it.
+/// How many arrivals are enough, and after how many segments there is an end of it; light that is walled
+/// in where it starts takes none, and ends by its paths.
 const ENOUGH: usize = 1 << 17;
 const MOST_SEGMENTS: u64 = 1 << 21;
+const MOST_PATHS: u32 = 1 << 15;
 /// The most arrivals of a region, and the fewest that one can learn from.
 const MOST: usize = 400;
 const FEWEST: usize = 16;
@@ -167,10 +169,10 @@ impl Guide {
             });
             let arrivals = batches.iter().map(|(arrivals, _)| arrivals.len()).sum::<usize>();
             let segments = batches.iter().map(|(_, tally)| tally.segments()).sum::<u64>();
-            if arrivals >= ENOUGH || segments >= MOST_SEGMENTS {
+            done += paths;
+            if arrivals >= ENOUGH || segments >= MOST_SEGMENTS || done >= MOST_PATHS {
                 break;
             }
-            done += paths;
             paths = done;
         }
         let arrivals = batches.into_iter().flat_map(|(arrivals, _)| arrivals).collect();

@@ -170,8 +170,10 @@ impl<'a> PathWalk<'a> {
         let Some(seen) = camera.see(vertex.position, DVec2::new(u, v), width, height) else {
             return;
         };
-        let outside = -2.0..f64::from(width) + 2.0;
-        if !outside.contains(&seen.place.x) || !vertex.agrees(seen.direction) {
+        // No pixel gathers from farther than two beside the image.
+        let size = DVec2::new(f64::from(width), f64::from(height));
+        let off = (seen.place - seen.place.clamp(DVec2::ZERO, size)).abs().max_element();
+        if off > 2.0 || !vertex.agrees(seen.direction) {
             return;
         }
         let answer = vertex.answer(seen.direction);
