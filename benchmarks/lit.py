@@ -8,6 +8,7 @@ At half the size Lamplit's methods run alone. Writes ``lit.json``, ``.md``, ``.p
 pictures into the results. Once the long runs are there it takes about a quarter of an hour:
 
     python benchmarks/run.py --parts lit
+    python benchmarks/run.py --parts lit --short --lamps L1 L3 L4
     python benchmarks/run.py --parts lit --quick --lamps L1 --methods path
 """
 
@@ -60,6 +61,16 @@ class Settings:
     reference_parts: int = 8
     reference_core_s: float = 30.0
 
+
+#: A quarter of an hour for three lamps, long runs included; those are short, and still have dots.
+SHORT = Settings(
+    width=200,
+    height=100,
+    judged_core_s=10.0,
+    half_core_s=2.0,
+    reference_parts=4,
+    reference_core_s=10.0,
+)
 
 #: To see that all works, not to measure.
 QUICK = Settings(

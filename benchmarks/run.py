@@ -53,6 +53,7 @@ def main() -> None:
     parser.add_argument("--triangles", type=int, nargs="*", default=[100_000, 1_000_000, 5_000_000])
     own = parser.add_argument_group("lit")
     own.add_argument("--quick", action="store_true", help="small and short, into build/lit-quick/")
+    own.add_argument("--short", action="store_true", help="half the size, half the time")
     own.add_argument("--lamps", nargs="*", choices=tuple(LAMPS), default=lit.USUAL)
     own.add_argument("--methods", nargs="*", default=lit.METHODS, help="of Lamplit; path first")
     own.add_argument("--long", type=float, help="core seconds of the pictures' second line")
@@ -62,7 +63,8 @@ def main() -> None:
     if "unlit" in options.parts:
         unlit.measure(results)
     if "lit" in options.parts:
-        settings = lit.QUICK if options.quick else lit.Settings()
+        settings = lit.SHORT if options.short else lit.Settings()
+        settings = lit.QUICK if options.quick else settings
         if options.long:
             settings = dataclasses.replace(settings, long_core_s=options.long)
         lit.measure(results, settings, lamps=options.lamps, methods=options.methods)

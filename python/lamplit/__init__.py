@@ -22,11 +22,9 @@ if TYPE_CHECKING:
         compare,
         measure,
         render,
-        render_views,
     )
     from lamplit.errors import LamplitError
     from lamplit.report.picture_files import write_picture
-    from lamplit.report.view_files import write_views
     from lamplit.scene import Scene, check_scene, load_scene
     from lamplit.spectrum import SpectralDistribution
 
@@ -43,9 +41,7 @@ _HOMES = {
     "load_scene": "lamplit.scene",
     "measure": "lamplit.engine",
     "render": "lamplit.engine",
-    "render_views": "lamplit.engine",
     "write_picture": "lamplit.report.picture_files",
-    "write_views": "lamplit.report.view_files",
 }
 
 __all__ = [
@@ -61,9 +57,7 @@ __all__ = [
     "load_scene",
     "measure",
     "render",
-    "render_views",
     "write_picture",
-    "write_views",
 ]
 
 

@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 import lamplit as ll
+from lamplit.engine import render_views
+from lamplit.scene import memory_estimate
 
 Table = dict[str, Any]
 
@@ -80,3 +82,38 @@ def test_a_lit_picture_does_not_depend_on_threads_and_does_on_its_seed(
     one = ll.render(scene, threads=1).xyz
     assert np.array_equal(one, ll.render(scene, threads=3).xyz)
     assert not np.array_equal(one, ll.render(bulb(scene_of, roughness=0.3, samples=24, seed=2)).xyz)
+
+
+def test_frames_that_share_what_was_learned_are_those_of_single_renders(
+    scene_of: Callable[..., Any],
+) -> None:
+    scene = bulb(scene_of, samples=8)
+    for image in render_views(scene, turntable=3, sweep_deg=90.0):
+        alone = ll.render(scene.changed(camera=image.scene.camera))
+        assert np.array_equal(image.xyz, alone.xyz)
+
+
+def test_lit_is_no_error_where_nothing_shines(scene_of: Callable[..., Any]) -> None:
+    lit = bulb(scene_of, samples=4)
+    dark = lit.changed(objects=tuple(thing for thing in lit.objects if thing.emission is None))
+    for image in [ll.render(dark, method="lit"), *render_views(dark, turntable=2, method="lit")]:
+        assert image.method == "lit"
+        assert image.xyz[..., 1].max() > 0.0
+
+
+def test_the_few_samples_of_a_frosted_bulb_show_its_light(scene_of: Callable[..., Any]) -> None:
+    scene = bulb(scene_of, roughness=0.3)
+    few = np.mean(
+        [
+            ll.render(bulb(scene_of, roughness=0.3, samples=4, seed=seed)).xyz[..., 1].mean()
+            for seed in range(12)
+        ]
+    )
+    many = ll.render(scene, samples=256).xyz[..., 1].mean()
+    assert few == pytest.approx(many, rel=0.25)
+
+
+def test_the_films_of_a_lit_picture_are_foretold(scene_of: Callable[..., Any]) -> None:
+    lit, path = (memory_estimate(bulb(scene_of, method=method)) for method in ("auto", "path"))
+    # Two films of 112 bytes a pixel instead of one, and 16 times three doubles.
+    assert lit.film_bytes - path.film_bytes == (112 + 16 * 24) * 12 * 10

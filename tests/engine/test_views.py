@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import lamplit as ll
+from lamplit.engine import render_views
 from lamplit.engine.assembly import assemble
 from lamplit.engine.views import plan_views
 
@@ -29,7 +30,7 @@ def ball_scene(scene_of: SceneOf, **more: Any) -> ll.Scene:
 
 def test_each_picture_is_the_one_that_render_makes_from_there(scene_of: SceneOf) -> None:
     scene = ball_scene(scene_of)
-    for image in ll.render_views(scene, turntable=5, sweep_deg=120.0):
+    for image in render_views(scene, turntable=5, sweep_deg=120.0):
         alone = ll.render(image.scene, threads=1)
         np.testing.assert_array_equal(image.xyz, alone.xyz)
         np.testing.assert_array_equal(image.xyz_standard_error, alone.xyz_standard_error)
@@ -38,7 +39,7 @@ def test_each_picture_is_the_one_that_render_makes_from_there(scene_of: SceneOf)
 
 def test_a_circle_begins_with_the_scene_as_it_is(scene_of: SceneOf) -> None:
     scene = ball_scene(scene_of)
-    first = next(ll.render_views(scene, turntable=3, sweep_deg=360.0))
+    first = next(render_views(scene, turntable=3, sweep_deg=360.0))
     np.testing.assert_array_equal(first.xyz, ll.render(scene).xyz)
 
 
@@ -50,7 +51,7 @@ def test_the_scene_is_assembled_once(scene_of: SceneOf, monkeypatch: pytest.Monk
         return assemble(scene, carrier)
 
     monkeypatch.setattr(sys.modules["lamplit.engine.render"], "assemble", counted)
-    assert len(list(ll.render_views(ball_scene(scene_of), turntable=4))) == 4
+    assert len(list(render_views(ball_scene(scene_of), turntable=4))) == 4
     assert len(assembled) == 1
 
 
@@ -62,7 +63,7 @@ def test_a_shining_face_is_seen_as_large_as_the_cosine_says(scene_of: SceneOf) -
         background={"kind": "constant", "source": "E", "luminance_cd_m2": 0.0},
         objects=[face],
     )
-    images = list(ll.render_views(scene, turntable=3, sweep_deg=120.0))
+    images = list(render_views(scene, turntable=3, sweep_deg=120.0))
     full = 1000.0 * np.pi * 6.0**2 / 20.0**2
     for image, cosine in zip(images, (0.5, 1.0, 0.5), strict=True):
         # The error is that of an edge in evenly spread samples: a few parts in a thousand.
@@ -72,14 +73,14 @@ def test_a_shining_face_is_seen_as_large_as_the_cosine_says(scene_of: SceneOf) -
 def test_each_picture_has_the_hash_of_the_scene_with_its_camera_there(scene_of: SceneOf) -> None:
     scene = ball_scene(scene_of)
     places = [(40.0, 0.0, 90.0), (0.0, 30.0, 95.0)]
-    for image, place in zip(ll.render_views(scene, eyes=places), places, strict=True):
+    for image, place in zip(render_views(scene, eyes=places), places, strict=True):
         camera = scene.camera.model_copy(update={"position_mm": place})
         assert image.scene.scene_hash == scene.changed(camera=camera).scene_hash
 
 
 def test_the_scenes_own_eyes_are_taken_where_none_are_given(scene_of: SceneOf) -> None:
     eyes = [{"position_mm": [5, 0, 100]}, {"position_mm": [9, 0, 100], "target_mm": [2, 0, 0]}]
-    cameras = [image.scene.camera for image in ll.render_views(ball_scene(scene_of, eyes=eyes))]
+    cameras = [image.scene.camera for image in render_views(ball_scene(scene_of, eyes=eyes))]
     assert [camera.position_mm for camera in cameras] == [(5, 0, 100), (9, 0, 100)]
     assert [camera.target_mm for camera in cameras] == [(0, 0, 0), (2, 0, 0)]
 
@@ -109,7 +110,7 @@ def test_what_cannot_be_seen_is_refused_before_the_first_picture(
     scene = scene_of(objects=[BALL | {"material": "black-abs", "radius_mm": 7}])
     monkeypatch.setattr("lamplit.engine.views.set_stage", None)
     with pytest.raises(ll.LamplitError) as caught:
-        ll.render_views(scene, **asked)
+        render_views(scene, **asked)
     assert says in str(caught.value)
     assert "\n" not in str(caught.value)
 
@@ -118,7 +119,7 @@ def test_a_view_of_nothing_is_refused(scene_of: SceneOf) -> None:
     scene = ball_scene(scene_of)
     camera = scene.camera.model_copy(update={"target_mm": (0.0, 0.0, 200.0)})
     with pytest.raises(ll.LamplitError, match=r"turntable\[0\].* sees none of the scene's objects"):
-        ll.render_views(scene.changed(camera=camera), turntable=3)
+        render_views(scene.changed(camera=camera), turntable=3)
 
 
 def test_progress_tells_the_frame_and_ctrl_c_ends_with_the_picture_that_was_begun(
@@ -136,7 +137,7 @@ def test_progress_tells_the_frame_and_ctrl_c_ends_with_the_picture_that_was_begu
 
     images: list[ll.Image] = []
     with pytest.raises(ll.RenderInterrupted) as stopped:
-        images.extend(ll.render_views(long, turntable=3, progress=stop_in_the_second))
+        images.extend(render_views(long, turntable=3, progress=stop_in_the_second))
     assert {*seen} == {0, 1}
     assert len(images) == 1
     assert images[0].complete
@@ -152,7 +153,7 @@ def test_files_that_the_pictures_share_are_read_once_for_their_hashes(
     part = {"name": "part", "kind": "mesh", "file": name, "unit": "mm", "material": "red-pmma"}
     scene = scene_of(image={"method": "path"}, objects=[part])
     as_it_was = [view.scene_hash for view in plan_views(scene, turntable=2).scenes]
-    images = ll.render_views(scene, turntable=2)
+    images = render_views(scene, turntable=2)
     seen = [next(images).scene.scene_hash]
     write_ply("box.ply", *box_mesh((-4, -4, -4), (4, 4, 4)))
     seen.append(next(images).scene.scene_hash)

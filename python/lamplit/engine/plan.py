@@ -11,6 +11,7 @@ from pydantic import ValidationError
 from lamplit.errors import LamplitError, nearest_name
 from lamplit.scene import Scene
 from lamplit.scene.camera import MOST_SAMPLES, ImageSettings
+from lamplit.scene.methods import physical_method
 
 METHODS = ("path", "lit", "hall")
 #: Of these the plan takes what suits the scene.
@@ -65,7 +66,7 @@ def plan(
         )
     chosen = method or scene.image.method
     if chosen == _AUTO:
-        chosen = "lit" if any(thing.emission for thing in scene.objects) else "path"
+        chosen = physical_method(scene)
     _check(chosen, error=error, time_s=time_s, adaptive=adaptive, layers=layers)
     target = None if chosen == "hall" else error
     if error is None and chosen != "hall" and adaptive is not False:

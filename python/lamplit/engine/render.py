@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -116,6 +116,8 @@ class Stage:
     scene_hash: str
     build_s: float
     notices: tuple[str, ...]
+    #: Where light comes from, where that serves more than one picture.
+    guide: _core.LightGuide | None = None
 
 
 def set_stage(settled: Plan, colour: Literal["spectral", "rgb"] = "spectral") -> Stage:
@@ -159,8 +161,7 @@ def expose(
     seen = features_of(scene, world, threads=threads) if features else None
     built = time.perf_counter()
     outcome = _trace(
-        settled,
-        world,
+        stage,
         bands=bands,
         layers=layers,
         threads=threads,
@@ -204,8 +205,7 @@ def expose(
 
 
 def _trace(
-    settled: Plan,
-    world: _core.Scene,
+    stage: Stage,
     *,
     bands: int,
     layers: bool,
@@ -213,7 +213,7 @@ def _trace(
     progress: ProgressCallback | None,
     preview: PreviewCallback | None,
 ) -> _core.Render:
-    scene = settled.scene
+    settled, scene = stage.settled, stage.settled.scene
     image = scene.image
 
     def show(
@@ -225,11 +225,11 @@ def _trace(
     if progress is not None:
         progress(0, image.width * image.height * image.samples)
     try:
-        return world.render(
+        return stage.world.render(
             image.width,
             image.height,
             image.samples,
-            _method(scene),
+            _method(scene, stage.guide),
             adaptive=settled.adaptive,
             target_error=settled.error,
             time_budget_s=settled.time_s,
@@ -246,15 +246,35 @@ def _trace(
         raise SceneError(str(fault), file=scene.path) from fault
 
 
-def _method(scene: Scene) -> _core.HallMethod | _core.PathMethod | _core.LitMethod:
-    if scene.image.method != "hall":
-        path = scene.path_settings
-        walks = _core.PathMethod(
-            max_depth=path.max_depth,
-            split_depth=path.split_depth,
-            roulette_below=path.roulette_below,
-        )
-        return _core.LitMethod(walks) if scene.image.method == "lit" else walks
+def with_guide(stage: Stage, *, threads: int | None) -> Stage:
+    """Return ``stage`` with what the method lit learns of its light, for more than one picture."""
+    scene = stage.settled.scene
+    if stage.settled.method != "lit":
+        return stage
+    walks, seed = _walks(scene), scene.image.seed
+    try:
+        guide = _core.LightGuide(stage.world, walks, seed=seed, threads=threads or 0)
+    except ValueError:  # nothing shines that an eye sees: there is nothing to learn
+        return stage
+    return replace(stage, guide=guide)
+
+
+def _walks(scene: Scene) -> _core.PathMethod:
+    path = scene.path_settings
+    return _core.PathMethod(
+        max_depth=path.max_depth,
+        split_depth=path.split_depth,
+        roulette_below=path.roulette_below,
+    )
+
+
+def _method(
+    scene: Scene, guide: _core.LightGuide | None
+) -> _core.HallMethod | _core.PathMethod | _core.LitMethod:
+    if scene.image.method == "lit":
+        return _core.LitMethod(_walks(scene), guide)
+    if scene.image.method == "path":
+        return _walks(scene)
     hall = scene.hall
     return _core.HallMethod(
         max_depth=hall.max_depth,

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from lamplit.engine.assembly import aim
 from lamplit.engine.image import Image
 from lamplit.engine.plan import Plan, plan
-from lamplit.engine.render import expose, set_stage
+from lamplit.engine.render import expose, set_stage, with_guide
 from lamplit.engine.snapshot import PreviewCallback
 from lamplit.errors import LamplitError
 from lamplit.scene import Scene
@@ -58,6 +58,7 @@ class Views:
         """
         started = time.perf_counter()
         stage = set_stage(replace(self.settled, scene=self.scenes[0]))
+        stage = with_guide(stage, threads=threads)
         share_hashes(self.scenes)
         for at, scene in enumerate(self.scenes):
             aim(stage.world.look, scene.camera)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from lamplit.errors import LamplitError
+from lamplit.scene.methods import physical_method
 from lamplit.scene.models import Scene
 
 #: What reading the largest mesh takes for a while: its topology, and its normals' repair.
@@ -22,6 +23,8 @@ _BAND_BYTES_PER_PIXEL = 16
 _LAYER_BYTES_PER_PIXEL = 56 + 2 * 24
 #: A picture's spectra on twice its width and height, while glare is laid on it.
 _GLARE_BYTES_PER_PIXEL = 210
+#: Where light is shown through rough covers: 16 pictures of X, Y, Z, by light group with layers.
+_SHOWN_BYTES_PER_PIXEL = 16 * 24
 #: Spectral bands of a pixel, at most.
 MOST_BANDS = 80
 #: The interpreter with its libraries, and spectral tables.
@@ -66,6 +69,9 @@ def memory_estimate(scene: Scene, *, bands: int = 0, layers: int = 0) -> MemoryE
     pixels = scene.image.width * scene.image.height
     per_pixel = _FILM_BYTES_PER_PIXEL + _BAND_BYTES_PER_PIXEL * bands
     per_pixel += _LAYER_BYTES_PER_PIXEL * layers
+    if _is_lit(scene):
+        # A film each for the sharp and the soft part, and what walks from lights show.
+        per_pixel = 2 * per_pixel + _SHOWN_BYTES_PER_PIXEL * max(1, layers)
     per_pixel += _GLARE_BYTES_PER_PIXEL if scene.display.glare else 0
     return MemoryEstimate(
         triangles,
@@ -75,6 +81,11 @@ def memory_estimate(scene: Scene, *, bands: int = 0, layers: int = 0) -> MemoryE
         pixels * per_pixel,
         _BASE_BYTES,
     )
+
+
+def _is_lit(scene: Scene) -> bool:
+    method = scene.image.method
+    return (physical_method(scene) if method == "auto" else method) == "lit"
 
 
 def check_memory(estimate: MemoryEstimate, most_bytes: float | None) -> None:

@@ -1,13 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0 OR MIT
-"""How far rays are followed, for each of the two methods."""
+"""How far rays are followed, by each method, and which one suits a scene."""
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from pydantic import Field
 
 from lamplit.scene.fields import Share, Table
+
+if TYPE_CHECKING:
+    from lamplit.scene.models import Scene
+
+
+def physical_method(scene: Scene) -> Literal["path", "lit"]:
+    """Return what the method ``auto`` stands for: ``lit`` where an object shines."""
+    return "lit" if any(thing.emission for thing in scene.objects) else "path"
 
 
 class HallSettings(Table):
