@@ -208,7 +208,7 @@ def _found_line(found: dict[str, float]) -> str | None:
     total = sum(found.values())
     if len(found) < 2 or total <= 0.0:
         return None
-    return ", ".join(f"{words[how]} {100 * part / total:.2g} %" for how, part in found.items())
+    return ", ".join(f"{words[how]} {100 * part / total:.3g} %" for how, part in found.items())
 
 
 def _ledger_line(ledger: Ledger) -> str:
