@@ -62,14 +62,14 @@ class Settings:
     reference_core_s: float = 30.0
 
 
-#: A quarter of an hour for three lamps, long runs included; those are short, and still have dots.
+#: Half an hour for three lamps, long runs included; `path` still has dots in its own.
 SHORT = Settings(
     width=200,
     height=100,
-    judged_core_s=10.0,
-    half_core_s=2.0,
+    judged_core_s=20.0,
+    half_core_s=5.0,
     reference_parts=4,
-    reference_core_s=10.0,
+    reference_core_s=40.0,
 )
 
 #: To see that all works, not to measure.

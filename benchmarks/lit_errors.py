@@ -37,6 +37,15 @@ def tone(xyz: Array, reference: Array) -> float:
     return float(((toned(xyz, mean) - wanted) ** 2 / (wanted**2 + _EPSILON)).mean())
 
 
+def tone_variance(pictures: Array) -> float:
+    """Return the mean over pixels of the relative variance of T of independent ``pictures``."""
+    mean = pictures.mean(axis=0)
+    tones = toned(pictures, float(mean[..., 1].mean()))
+    return float(
+        (tones.var(axis=0, ddof=1) / (toned(mean, mean[..., 1].mean()) ** 2 + _EPSILON)).mean()
+    )
+
+
 def trim(xyz: Array, reference: Array) -> float:
     """Return the relative MSE of luminance without the worst 0.1 % of the pixels of (H, W, 3).
 
@@ -103,11 +112,6 @@ class Estimate:
             sum(w**2 * one.flux_variance for w, one in parts),
             min(one.pictures for _, one in parts),
         )
-
-    def typical_variance(self) -> float:
-        """Return the median over bright blocks of their relative variance: dots hardly move it."""
-        bright = self.blocks > self.blocks.mean()
-        return float(np.median(self.blocks_variance[bright] / self.blocks[bright] ** 2))
 
     def against(self, other: Estimate) -> dict[str, float]:
         """Return how this agrees with an independent one, in standard errors of both.

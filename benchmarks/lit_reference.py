@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 from errors import Array
-from lit_errors import Estimate, tone, trim
+from lit_errors import Estimate, tone, tone_variance, trim
 from lit_runners import MITSUBA, Runner
 from mitsuba_scene import write_scene
 
@@ -32,7 +32,7 @@ _FIRST_SEED = 1001
 class Reference:
     """The converged picture (H, W, 3) of Lamplit's methods, and all programs' long runs.
 
-    Methods are weighted by the inverse of one variance each, the median over bright blocks, so
+    Methods are weighted by the inverse of one variance each, that of their tones, so
     that no pixel's weight depends on its noise. Mitsuba is left out: it is what checks the rest.
     """
 
@@ -86,7 +86,7 @@ def reference(
     key = _key(scene)
     kept = {name: _kept(runner, name, key, parts, core_s) for name, runner in runners.items()}
     own = {name: one[0] for name, one in kept.items() if name != MITSUBA}
-    inverse = {name: 1.0 / Estimate.of(one).typical_variance() for name, one in own.items()}
+    inverse = {name: 1.0 / tone_variance(one) for name, one in own.items()}
     weights = {name: one / sum(inverse.values()) for name, one in inverse.items()}
     xyz = _mean(weights, own, slice(None))
     scales = {
