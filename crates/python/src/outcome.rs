@@ -108,6 +108,7 @@ impl Render {
                 Found::ByEye => "by_eye",
                 Found::Specular => "specular",
                 Found::Scattered => "scattered",
+                Found::Landed => "landed",
                 Found::ShownByLights => "shown_by_lights",
             };
             parts.set_item(name, luminance)?;

@@ -203,6 +203,7 @@ def _found_line(found: dict[str, float]) -> str | None:
     words = {
         "specular": "in mirrors and through glass",
         "scattered": "scattered",
+        "landed": "where light landed",
         "shown_by_lights": "through rough covers, from the lights",
     }
     total = sum(found.values())

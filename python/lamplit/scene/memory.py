@@ -25,6 +25,9 @@ _LAYER_BYTES_PER_PIXEL = 56 + 2 * 24
 _GLARE_BYTES_PER_PIXEL = 210
 #: Where light is shown through rough covers: 16 pictures of X, Y, Z, by light group with layers.
 _SHOWN_BYTES_PER_PIXEL = 16 * 24
+#: Light that landed, twice while it is sorted: so much of it at most, and about so much per pixel.
+_LANDED_BYTES = 2 * 216
+_MOST_LANDED, _LANDED_PER_PIXEL = 2**18, 12
 #: Spectral bands of a pixel, at most.
 MOST_BANDS = 80
 #: The interpreter with its libraries, and spectral tables.
@@ -73,12 +76,13 @@ def memory_estimate(scene: Scene, *, bands: int = 0, layers: int = 0) -> MemoryE
         # A film each for the sharp and the soft part, and what walks from lights show.
         per_pixel = 2 * per_pixel + _SHOWN_BYTES_PER_PIXEL * max(1, layers)
     per_pixel += _GLARE_BYTES_PER_PIXEL if scene.display.glare else 0
+    landed = min(_MOST_LANDED, _LANDED_PER_PIXEL * pixels) if _is_lit(scene) else 0
     return MemoryEstimate(
         triangles,
         meshes,
         _READING_BYTES_PER_TRIANGLE * max((len(mesh.triangles) for mesh in placed), default=0),
         _TRACER_BYTES_PER_TRIANGLE * triangles,
-        pixels * per_pixel,
+        pixels * per_pixel + _LANDED_BYTES * landed,
         _BASE_BYTES,
     )
 

@@ -100,6 +100,8 @@ pub struct Film {
     pub pixels: Vec<PixelSums>,
     /// How many segments were followed for each pixel.
     pub segments: Vec<u64>,
+    /// The sum of the luminance that was found where light had landed on matt surfaces, for each pixel.
+    pub landed: Vec<f64>,
     /// Bands per lane; 0 for a film without spectra.
     pub bands_per_lane: usize,
     /// The spectral sums, pixel by pixel, [`Film::bands`] for each.
@@ -121,6 +123,7 @@ impl Film {
             height,
             pixels: vec![PixelSums::default(); count],
             segments: vec![0; count],
+            landed: vec![0.0; count],
             bands_per_lane,
             band_sums: vec![0.0; count * bands_per_lane * LANES],
             band_visits: vec![0; count * bands_per_lane],

@@ -3,7 +3,7 @@
 
 mod ray;
 
-pub use glam::{DAffine3, DMat3, DMat4, DVec2, DVec3};
+pub use glam::{DAffine3, DMat3, DMat4, DVec2, DVec3, IVec3};
 pub use ray::Ray;
 
 /// The bound γₙ = nε/(1 − nε) on the relative error of `n` roundings in double precision.

@@ -80,7 +80,8 @@ impl Pilot {
         let means = by_colour(&luminance, width);
         let tone = luminance.iter().enumerate();
         let tone: Vec<f64> = tone.map(|(at, own)| own + FLOOR * means[colour(at, width)]).collect();
-        let films = films.iter().map(|film| Trial::of(film, &tone)).collect();
+        let mut films: Vec<Trial> = films.iter().map(|film| Trial::of(film, &tone)).collect();
+        hold(&mut films, width);
         Self { films, tone, light: None, width }
     }
 
@@ -167,13 +168,7 @@ impl Trial {
         let cost = film.segments.iter().zip(pixels);
         let cost = cost.map(|(segments, pixel)| *segments as f64 / f64::from(pixel.samples.max(1)));
         let cost: Vec<f64> = cost.map(|cost| cost.max(1.0)).collect();
-        let mut noise: Vec<f64> =
-            round(&noise, width).iter().map(|variance| variance.sqrt()).collect();
-        let means = by_colour(&noise, width);
-        for (at, noise) in noise.iter_mut().enumerate() {
-            let mean = means[colour(at, width)];
-            *noise = noise.clamp(QUIETEST * mean, LOUDEST * mean);
-        }
+        let noise = round(&noise, width).iter().map(|variance| variance.sqrt()).collect();
         let samples = pixels.iter().map(|pixel| pixel.samples).max().unwrap_or(0);
         Self { noise, cost: round(&cost, width), samples }
     }
@@ -196,6 +191,11 @@ impl Allocation {
         self.counts[pixel]
     }
 
+    /// How many pixels take the sample `number`, counted from 0.
+    pub fn taking(&self, number: u32) -> usize {
+        self.counts.iter().filter(|count| **count > number).count()
+    }
+
     /// The most that a pixel takes.
     pub fn most(&self) -> u32 {
         self.counts.iter().copied().max().unwrap_or(0)
@@ -204,6 +204,19 @@ impl Allocation {
     /// All samples of all pixels.
     pub fn total(&self) -> u64 {
         self.counts.iter().map(|count| u64::from(*count)).sum()
+    }
+}
+
+/// Hold the noise of every pixel within bounds: of its film's mean from below, of the noisiest film's
+/// mean from above.
+fn hold(films: &mut [Trial], width: usize) {
+    let means: Vec<_> = films.iter().map(|trial| by_colour(&trial.noise, width)).collect();
+    let most = [0, 1].map(|colour| means.iter().map(|own| own[colour]).fold(0.0, f64::max));
+    for (trial, own) in films.iter_mut().zip(&means) {
+        for (at, noise) in trial.noise.iter_mut().enumerate() {
+            let colour = colour(at, width);
+            *noise = noise.clamp(QUIETEST * own[colour], LOUDEST * most[colour]);
+        }
     }
 }
 

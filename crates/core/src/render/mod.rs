@@ -3,6 +3,7 @@
 
 mod allocation;
 mod features;
+mod landings;
 mod learning;
 mod light_film;
 mod pass;
@@ -19,6 +20,7 @@ use thiserror::Error;
 use crate::film::Film;
 use crate::scene::{Interior, Scene};
 use crate::transport::{LightSource, Shining, Tally};
+use landings::Landings;
 use light_film::LightFilm;
 use rendering::Rendering;
 
@@ -114,10 +116,24 @@ pub fn render(
         let (guide, source) = (guide.as_deref(), LightSource::from(Shining::of(scene)));
         let shown = light_film(scene, &source, settings);
         let leaves_rough = shown.is_some();
+        let landings = landings(scene, &source, settings, interior);
         let rendering =
-            Rendering { scene, settings, interior, guide, leaves_rough, progress, began };
+            Rendering { scene, settings, interior, guide, leaves_rough, landings, progress, began };
         Ok(rendering.run(shown))
     })
+}
+
+/// The light that lands on matt surfaces, for methods that ask for it; nothing where nothing shines.
+fn landings<'a>(
+    scene: &'a Scene,
+    source: &'a LightSource,
+    settings: &'a RenderSettings,
+    interior: Interior,
+) -> Option<Landings<'a>> {
+    let Method::Lit(path) = settings.method else {
+        return None;
+    };
+    Landings::new(scene, source, path, settings, interior).ok()
 }
 
 /// The film of walks from lights, where these have a part: in a picture without spectra whose samples
@@ -130,8 +146,9 @@ fn light_film<'a>(
     let Method::Lit(path) = settings.method else {
         return None;
     };
-    let is_for_it =
-        settings.first_round().is_some() && settings.bands_per_lane == 0 && scene.has_rough_glass();
+    let is_for_it = settings.first_round().is_some()
+        && settings.bands_per_lane == 0
+        && scene.has_slightly_rough_glass();
     is_for_it.then(|| LightFilm::new(scene, source, path, settings).ok()).flatten()
 }
 

@@ -12,7 +12,7 @@ use super::Progress;
 use crate::film::{BandSums, Film, PixelSums};
 use crate::math::DVec2;
 use crate::scene::{Interior, Scene};
-use crate::transport::{Eye, Gathered, Guide, HallWalk, Part, PathWalk, Tally};
+use crate::transport::{Eye, Gathered, Guide, HallWalk, Part, PathWalk, Photons, Tally};
 
 /// Some samples of every pixel.
 pub(super) struct Pass<'a> {
@@ -29,6 +29,8 @@ pub(super) struct Pass<'a> {
     pub leaves_rough: bool,
     /// Where light comes from, for walks that know.
     pub guide: Option<&'a Guide>,
+    /// What landed on matt surfaces for these samples.
+    pub photons: Option<&'a Photons>,
     pub progress: &'a Progress,
 }
 
@@ -36,6 +38,7 @@ pub(super) struct Pass<'a> {
 struct Exposure<'a> {
     pixel: &'a mut PixelSums,
     segments: &'a mut u64,
+    landed: &'a mut f64,
     bands: BandSums<'a>,
     layers: &'a mut [PixelSums],
 }
@@ -53,14 +56,16 @@ impl Pass<'_> {
         film.pixels
             .par_chunks_mut(tile)
             .zip(film.segments.par_chunks_mut(tile))
+            .zip(film.landed.par_chunks_mut(tile))
             .zip(sums)
             .zip(visits)
             .zip(layer_sums)
             .enumerate()
-            .map(|(at, ((((pixels, segments), sums), visits), layer_sums))| {
+            .map(|(at, (((((pixels, segments), landed), sums), visits), layer_sums))| {
                 let mut tally = Tally::new(self.scene.bodies.len());
                 let mut gathered = Gathered::new(layers);
-                for (i, (pixel, segments)) in pixels.iter_mut().zip(segments).enumerate() {
+                let pixels = pixels.iter_mut().zip(segments).zip(landed);
+                for (i, ((pixel, segments), landed)) in pixels.enumerate() {
                     if self.progress.is_cancelled() {
                         break;
                     }
@@ -69,7 +74,7 @@ impl Pass<'_> {
                         visits: &mut visits[i * per_lane..(i + 1) * per_lane],
                     };
                     let layers = &mut layer_sums[i * layers..(i + 1) * layers];
-                    let exposure = Exposure { pixel, segments, bands, layers };
+                    let exposure = Exposure { pixel, segments, landed, bands, layers };
                     self.expose(at * tile + i, exposure, &mut gathered, &mut tally);
                 }
                 tally
@@ -98,7 +103,7 @@ impl Pass<'_> {
         gathered: &mut Gathered,
         tally: &mut Tally,
     ) {
-        let Exposure { pixel, segments, mut bands, layers } = exposure;
+        let Exposure { pixel, segments, landed, mut bands, layers } = exposure;
         let samples = self.samples_of(number);
         let phases = self.scene.phases();
         let done = u64::from(samples.end - samples.start);
@@ -111,6 +116,7 @@ impl Pass<'_> {
                 continue;
             }
             pixel.add(self.scene.tristimulus(gathered.radiance, wavelengths));
+            *landed += self.scene.tristimulus(gathered.landed, wavelengths)[1];
             for (sums, xyz) in layers.iter_mut().zip(&gathered.layers) {
                 sums.add(*xyz);
             }
@@ -132,6 +138,10 @@ impl Pass<'_> {
     ) -> crate::spectrum::SampledWavelengths {
         let (scene, settings) = (self.scene, self.settings);
         let sampler = settings.sequence.sampler(settings.seed, number as u64, sample);
+        let sampler = match self.photons {
+            Some(photons) => sampler.on_phase(photons.wavelengths()),
+            None => sampler,
+        };
         let wavelengths = sampler.wavelengths(scene.phases());
         let width = settings.width as usize;
         let centre = DVec2::new((number % width) as f64 + 0.5, (number / width) as f64 + 0.5);
@@ -145,8 +155,8 @@ impl Pass<'_> {
                     HallWalk::radiance(scene, hall, wavelengths, sampler, tally, start);
             }
             Method::Path(path) | Method::Lit(path) => {
-                let (part, guide, leaves_rough) = (self.part, self.guide, self.leaves_rough);
-                let eye = Eye { gathered, part, guide, leaves_rough };
+                let Self { part, guide, leaves_rough, photons, .. } = *self;
+                let eye = Eye { gathered, part, guide, leaves_rough, photons };
                 PathWalk::gather(scene, path, wavelengths, sampler, tally, eye, start);
             }
         }

@@ -6,13 +6,14 @@ use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use super::allocation::{Allocation, Pilot};
+use super::landings::Landings;
 use super::light_film::LightFilm;
 use super::pass::Pass;
 use super::settings::RenderSettings;
 use super::{Progress, Rendered};
 use crate::film::Film;
 use crate::scene::{Interior, Scene};
-use crate::transport::{Guide, Ledger, Part, Tally};
+use crate::transport::{Guide, Ledger, Part, Photons, Tally};
 
 /// A picture in the making.
 pub(super) struct Rendering<'a> {
@@ -22,6 +23,8 @@ pub(super) struct Rendering<'a> {
     pub guide: Option<&'a Guide>,
     /// Whether walks from lights show what they send through rough boundaries.
     pub leaves_rough: bool,
+    /// What lands on matt surfaces, for the scattered part.
+    pub landings: Option<Landings<'a>>,
     pub progress: &'a Progress,
     pub began: Instant,
 }
@@ -127,6 +130,12 @@ impl Rendering<'_> {
         paths
     }
 
+    /// Whether what was allotted takes more time than there is: how long it takes is only an estimate.
+    fn is_overdue(&self) -> bool {
+        let budget = self.settings.time_budget;
+        budget.is_some_and(|budget| self.began.elapsed() > budget + budget / 10)
+    }
+
     fn pixels(&self) -> u64 {
         self.settings.pixels()
     }
@@ -159,31 +168,15 @@ impl Rendering<'_> {
         while next < end && !self.progress.is_cancelled() {
             let until = end.min(next + length);
             let pass_started = Instant::now();
-            let Self { scene, settings, interior, guide, leaves_rough, progress, .. } = *self;
-            for Exposure { part, film, limit } in &mut *exposures {
-                let (part, limit) = (*part, limit.as_ref());
-                let samples = next..until;
-                let pass = Pass {
-                    scene,
-                    settings,
-                    interior,
-                    part,
-                    samples,
-                    limit,
-                    leaves_rough,
-                    guide,
-                    progress,
-                };
-                let mut own = pass.run(film);
-                if part == Part::Specular {
-                    // Its walks end half-way; those of the other part go all the way.
-                    own.ledger = Ledger::new(scene.bodies.len());
-                }
-                tally.add(&own);
+            for exposure in &mut *exposures {
+                tally.add(&self.expose_part(exposure, next..until));
             }
             next = until;
             self.progress.viewfinder.show(|| self.snapshot(exposures, shown, each));
             length = self.progress.viewfinder.next_length(length, pass_started.elapsed());
+            if self.is_overdue() {
+                break;
+            }
             if let Some(budget) = time_budget {
                 let spent = started.elapsed().as_secs_f64();
                 let left = (budget.as_secs_f64() - spent) / spent;
@@ -199,6 +192,51 @@ impl Rendering<'_> {
     }
 }
 
+impl Rendering<'_> {
+    /// Take samples of one part of the light.
+    fn expose_part(&self, exposure: &mut Exposure, samples: Range<u32>) -> Tally {
+        let Self { scene, settings, interior, guide, leaves_rough, progress, .. } = *self;
+        let Exposure { part, film, limit } = exposure;
+        let (part, limit) = (*part, limit.as_ref());
+        let mut run = |samples: Range<u32>, photons: Option<&Photons>| {
+            let pass = Pass {
+                scene,
+                settings,
+                interior,
+                part,
+                samples,
+                limit,
+                leaves_rough,
+                guide,
+                photons,
+                progress,
+            };
+            pass.run(film)
+        };
+        let mut tally = Tally::new(scene.bodies.len());
+        match &self.landings {
+            Some(landings) if part == Part::Scattered => {
+                for sample in samples {
+                    if progress.is_cancelled() {
+                        break;
+                    }
+                    let own = sample - settings.samples.start;
+                    let pixels = limit.map_or(self.pixels() as usize, |limit| limit.taking(own));
+                    let photons = landings.of_sample(sample, pixels);
+                    tally.add(&run(sample..sample + 1, Some(&photons)));
+                    tally.eye_rays += photons.segments();
+                }
+            }
+            _ => tally.add(&run(samples, None)),
+        }
+        if part == Part::Specular {
+            // Its walks end half-way; those of the other part go all the way.
+            tally.ledger = Ledger::new(scene.bodies.len());
+        }
+        tally
+    }
+}
+
 impl Rendered {
     /// The sum of all parts.
     fn of(exposures: Vec<Exposure>, shown: Option<LightFilm<'_>>, mut tally: Tally) -> Self {
@@ -206,7 +244,11 @@ impl Rendered {
         let mut found = Vec::new();
         let mut films = Vec::new();
         for Exposure { part, film, .. } in exposures {
-            found.push((Found::by_eye(part), mean_luminance(&film)));
+            let landed = mean_landed(&film);
+            found.push((Found::by_eye(part), mean_luminance(&film) - landed));
+            if part == Part::Scattered {
+                found.push((Found::Landed, landed));
+            }
             films.push(film);
         }
         if let Some(shown) = shown {
@@ -228,6 +270,8 @@ pub enum Found {
     Specular,
     /// By walks from the eye that were turned at random.
     Scattered,
+    /// By walks from lights, which landed on matt surfaces that walks from the eye met.
+    Landed,
     /// By walks from lights, which show it to the camera.
     ShownByLights,
 }
@@ -240,6 +284,13 @@ impl Found {
             Part::Scattered => Self::Scattered,
         }
     }
+}
+
+/// The mean luminance of what was found where it had landed, in cd/m².
+fn mean_landed(film: &Film) -> f64 {
+    let means = film.landed.iter().zip(&film.pixels);
+    let means = means.map(|(landed, pixel)| landed / f64::from(pixel.samples.max(1)));
+    means.sum::<f64>() / film.pixels.len().max(1) as f64
 }
 
 /// The mean luminance of a film's pixels, in cd/m².

@@ -52,7 +52,7 @@ impl PixelSequence {
     /// The random numbers of sample number `sample` of pixel number `pixel`.
     pub fn sampler(self, seed: u64, pixel: u64, sample: u32) -> PixelSampler {
         let key = hash(seed ^ hash(pixel.wrapping_add(0x9E37_79B9_7F4A_7C15)));
-        PixelSampler { sequence: self, key, sample, dimension: 2 }
+        PixelSampler { sequence: self, key, sample, dimension: 2, phase: None }
     }
 }
 
@@ -63,6 +63,8 @@ pub struct PixelSampler {
     key: u64,
     sample: u32,
     dimension: u32,
+    /// The phase, if it is not the sequence that says.
+    phase: Option<SampledWavelengths>,
 }
 
 impl PixelSampler {
@@ -81,9 +83,18 @@ impl PixelSampler {
 
     /// The phase of this sample: every run of `phases` samples visits each phase once.
     pub fn wavelengths(&self, phases: usize) -> SampledWavelengths {
+        if let Some(phase) = self.phase {
+            return phase;
+        }
         let phases = phases as u32;
         let offset = (self.key >> 32) as u32 % phases;
         SampledWavelengths { phase: strided(self.sample % phases, phases, offset) as usize }
+    }
+
+    /// The same, of one given phase.
+    #[must_use]
+    pub fn on_phase(self, phase: SampledWavelengths) -> Self {
+        Self { phase: Some(phase), ..self }
     }
 
     /// The place of this sample on the camera's lens, in the unit square.

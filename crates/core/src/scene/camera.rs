@@ -114,6 +114,15 @@ impl Camera {
 }
 
 impl Camera {
+    /// How wide one of the pixels of so many rows is, in mm, at a `distance` straight ahead.
+    pub fn pixel_mm(&self, distance: f64, rows: u32) -> f64 {
+        let side = 2.0 * self.half_up.length() / f64::from(rows);
+        match self.projection {
+            Projection::Orthographic { .. } => side,
+            Projection::Pinhole { .. } | Projection::ThinLens { .. } => side * distance,
+        }
+    }
+
     /// How the camera sees a `point`, through the point `u` (uniform in the unit square) of the lens, if
     /// there is one; nothing where that is behind it.
     ///

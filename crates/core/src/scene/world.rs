@@ -138,10 +138,10 @@ impl Scene {
     }
 
     /// Whether a transparent body has a rough face.
-    pub fn has_rough_glass(&self) -> bool {
+    pub fn has_slightly_rough_glass(&self) -> bool {
         self.materials
             .iter()
-            .any(|material| material.dielectric().is_some() && material.finish.is_rough())
+            .any(|material| material.dielectric().is_some() && material.finish.is_slightly_rough())
     }
 
     /// The share of the light that a surface, met from `interior`, sends back or on when it arrives

@@ -11,18 +11,28 @@ pub struct Gathered {
     pub radiance: SampledSpectrum,
     /// X, Y and Z of each light group, in cd/m²; empty where nobody asked for layers.
     pub layers: Vec<[f64; 3]>,
+    /// The part of the radiance that was found where it had landed on matt surfaces.
+    pub landed: SampledSpectrum,
+    /// The share of the walk that met matt surfaces, by what they send on.
+    pub met: f64,
 }
 
 impl Gathered {
     /// Nothing yet, with sums for `layers` light groups.
     pub fn new(layers: usize) -> Self {
-        Self { radiance: SampledSpectrum::ZERO, layers: vec![[0.0; 3]; layers] }
+        Self {
+            radiance: SampledSpectrum::ZERO,
+            layers: vec![[0.0; 3]; layers],
+            landed: SampledSpectrum::ZERO,
+            met: 0.0,
+        }
     }
 
     /// Forget everything, for the next sample.
     pub fn clear(&mut self) {
         self.radiance = SampledSpectrum::ZERO;
         self.layers.fill([0.0; 3]);
+        (self.landed, self.met) = (SampledSpectrum::ZERO, 0.0);
     }
 
     /// Add light of one group.

@@ -8,6 +8,7 @@ mod hall;
 mod ledger;
 mod meeting;
 mod path;
+mod photons;
 mod shadow;
 mod tally;
 
@@ -17,4 +18,5 @@ pub use guide::Guide;
 pub use hall::{HallSettings, HallWalk};
 pub use ledger::{Balance, Ledger};
 pub use path::{Carried, Eye, Part, PathSettings, PathWalk, Screen};
+pub use photons::{Crowd, Landed, Landing, Photons};
 pub use tally::Tally;

@@ -2,11 +2,12 @@
 //! Walks that learned where light comes from: the same light, found more often.
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use lamplit_core::film::Film;
 use lamplit_core::light::Base;
 use lamplit_core::math::DVec3;
-use lamplit_core::matter::Optics;
+use lamplit_core::matter::{conductor_reflectance, Optics};
 use lamplit_core::render::{learn, render, Method, Progress, RenderSettings};
 use lamplit_core::sampling::PixelFilter;
 use lamplit_core::scene::{Camera, Projection, Scene, Strength};
@@ -35,7 +36,7 @@ fn a_floor_under_a_bulb_is_as_bright_as_its_closed_form() {
     let illuminance = flux / (4.0 * PI) * (1.0 - r) / (d2 * 1e-6) * (50.0 / d2.sqrt());
     let expected = rho * illuminance / PI;
     let scene = bulb(flux, n, rho);
-    let guided = Take::lit(1 << 12, USUAL).luminance(&scene);
+    let guided = Take::lit(1 << 8, USUAL).by_seeds(16, &scene, None);
     guided.is(expected, 3e-3);
     let blind = Take::of(1 << 12, USUAL).luminance(&scene);
     assert!(blind.sigma > 20.0 * guided.sigma, "{blind:?} {guided:?}");
@@ -49,7 +50,7 @@ fn what_was_learned_of_another_scene_changes_no_expectation() {
     world.shine(lamp, Strength::Flux(flat(3.0)), 1);
     world.add(matt(0.5), plate(-51.0, -50.0));
     let elsewhere = world.along(DVec3::Y, -DVec3::Y);
-    let guide = learn(&elsewhere, USUAL, 3, 2).unwrap();
+    let guide = Arc::new(learn(&elsewhere, USUAL, 3, 2).unwrap());
 
     let mut world = World::dark();
     let lamp = world.add(matt(0.3), ball(DVec3::new(0.0, -20.0, 0.0), 8.0));
@@ -58,21 +59,12 @@ fn what_was_learned_of_another_scene_changes_no_expectation() {
         body(by_lane(|lane| 1.4 + 0.01 * lane as f64), flat(0.01), None),
         ball(DVec3::new(0.0, -18.0, 0.0), 20.0),
     );
-    let metal = Optics::Conductor { n: flat(0.9), k: flat(4.0), factor: 1.0, lacquer: None };
-    world.add_rough(metal, 0.3, plate(-51.0, -50.0));
+    world.add_rough(metal(), 0.3, plate(-51.0, -50.0));
     let at = DVec3::new(30.0, -50.0, 0.0);
     let eye = DVec3::new(50.0, 60.0, 10.0);
     let scene = world.along(at + eye, -eye);
     let expected = Take::of(1 << 13, USUAL).luminance(&scene);
-    let take = Take::lit(1 << 13, USUAL);
-    let misled = |seed| {
-        let guide = Some(std::sync::Arc::new(guide.clone()));
-        let settings = RenderSettings { guide, seed, ..take.settings() };
-        let film = render(&scene, &settings, &Progress::default()).unwrap().film;
-        let values: Vec<f64> = film.pixels.iter().map(|pixel| pixel.mean()[1]).collect();
-        Estimate::of(values.iter())
-    };
-    let got = misled(11);
+    let got = Take::lit(1 << 9, USUAL).by_seeds(16, &scene, Some(&guide));
     let sigma = got.sigma.hypot(expected.sigma);
     assert!((got.mean - expected.mean).abs() < 3.0 * sigma, "{got:?} {expected:?}");
     assert!(sigma < 0.03 * expected.mean, "{sigma} {expected:?}");
@@ -91,7 +83,7 @@ fn what_is_learned_does_not_depend_on_threads() {
 }
 
 /// Two lamps behind a frosted, dyed pane and before a matt wall, over a 24 × 16 picture.
-fn frosted(projection: Projection) -> Scene {
+fn frosted(projection: Projection, alpha: f64) -> Scene {
     let mut world = World::dark();
     for (x, group) in [(-5.0, 1), (6.0, 2)] {
         let lamp = world.add(matt(0.2), disc(DVec3::new(x, 0.0, 0.0), DVec3::Y, 0.8));
@@ -100,70 +92,116 @@ fn frosted(projection: Projection) -> Scene {
     world.add(matt(0.6), cuboid(DVec3::new(-16.0, -3.0, -12.0), DVec3::new(16.0, -1.0, 12.0)));
     let dye = by_lane(|lane| 0.1 - 0.005 * lane as f64);
     let pane = cuboid(DVec3::new(-12.0, 6.0, -8.0), DVec3::new(12.0, 8.0, 8.0));
-    world.add_rough(body(by_lane(|lane| 1.5 - 0.004 * lane as f64), dye, None), 0.3, pane);
+    world.add_rough(body(by_lane(|lane| 1.5 - 0.004 * lane as f64), dye, None), alpha, pane);
     let eye = DVec3::new(20.0, 70.0, 15.0);
     world.seen_by(Camera::new(eye, DVec3::new(0.0, 4.0, 0.0), DVec3::Z, projection).unwrap())
 }
 
+/// The luminance of the blocks of 4 × 4 pixels of a frosted picture, by light group, and of all of it.
+fn blocks(film: &Film) -> Vec<f64> {
+    let layer = |pixel: usize, group: usize| film.layer_sums[pixel * film.layers + group].mean()[1];
+    let block = |at: usize, group: usize| {
+        let (column, row) = (at % 6 * 4, at / 6 * 4);
+        let pixels = (0..16).map(|i| (row + i / 4) * 24 + column + i % 4);
+        pixels.map(|pixel| layer(pixel, group)).sum::<f64>()
+    };
+    let mut all: Vec<f64> = (0..48).map(|i| block(i % 24, 1 + i / 24)).collect();
+    all.push(film.pixels.iter().map(|pixel| pixel.mean()[1]).sum());
+    all
+}
+
 #[test]
-fn light_shown_from_the_lamps_and_light_found_from_the_eye_make_the_picture_that_the_eye_finds() {
-    for projection in [
-        Projection::Pinhole { field_of_view_deg: 24.0 },
-        Projection::ThinLens { field_of_view_deg: 24.0, aperture: 9.0, focus: 68.0 },
-        Projection::Orthographic { height: 30.0 },
+fn light_from_the_lamps_and_light_found_from_the_eye_make_the_picture_that_the_eye_finds() {
+    // Behind a very rough pane what has landed is met; a less rough one is shown to the camera.
+    for (projection, alpha) in [
+        (Projection::Pinhole { field_of_view_deg: 24.0 }, 0.3),
+        (Projection::ThinLens { field_of_view_deg: 24.0, aperture: 9.0, focus: 68.0 }, 0.2),
+        (Projection::Orthographic { height: 30.0 }, 0.3),
+        (Projection::Orthographic { height: 30.0 }, 0.2),
     ] {
-        let scene = frosted(projection);
-        let picture = |method: Method, adaptive: bool, samples: u32| {
-            let settings = RenderSettings {
-                width: 24,
-                height: 16,
-                samples: 0..samples,
-                method,
-                adaptive,
-                filter: PixelFilter::Gaussian,
-                bands_per_lane: 0,
-                ..Take::of(1, USUAL).settings()
+        let scene = frosted(projection, alpha);
+        // Neighbouring pixels share what lands and is shown: σ comes from pictures of their own.
+        let pictures = |method: Method, samples: u32| -> Vec<Estimate> {
+            let picture = |seed: u64| {
+                let settings = RenderSettings {
+                    width: 24,
+                    height: 16,
+                    samples: 0..samples,
+                    method,
+                    seed,
+                    adaptive: true,
+                    filter: PixelFilter::Gaussian,
+                    bands_per_lane: 0,
+                    ..Take::of(1, USUAL).settings()
+                };
+                blocks(&render(&scene, &settings, &Progress::default()).unwrap().film)
             };
-            render(&scene, &settings, &Progress::default()).unwrap().film
+            let all: Vec<Vec<f64>> = (0..8).map(picture).collect();
+            (0..49).map(|at| Estimate::of(all.iter().map(|blocks| &blocks[at]))).collect()
         };
-        let shown = picture(Method::Lit(USUAL), true, 96);
-        let found = picture(Method::Lit(USUAL), false, 256);
-        // By blocks of 4 × 4 pixels and light group.
-        let block = |film: &Film, at: usize, group: usize| {
-            let (column, row) = (at % 6 * 4, at / 6 * 4);
-            let pixels = (0..16).map(|i| (row + i / 4) * 24 + column + i % 4);
-            let sums: Vec<_> =
-                pixels.map(|pixel| film.layer_sums[pixel * film.layers + group]).collect();
-            let mean = sums.iter().map(|sums| sums.mean()[1]).sum::<f64>();
-            let variance = sums.iter().map(|sums| sums.standard_error()[1].powi(2)).sum::<f64>();
-            (mean, variance)
-        };
+        let lit = pictures(Method::Lit(USUAL), 96);
+        let path = pictures(Method::Path(USUAL), 192);
         // Dark blocks live of light so rare that their σ is not known.
-        let most = (0..24).map(|at| block(&found, at, 1).0).fold(0.0, f64::max);
+        let most = path[..24].iter().map(|block| block.mean).fold(0.0, f64::max);
         let (mut squares, mut number) = (0.0, 0.0);
-        for group in [1, 2] {
-            for at in 0..24 {
-                let [(a, va), (b, vb)] = [&shown, &found].map(|film| block(film, at, group));
-                if b < 0.03 * most {
-                    continue;
-                }
-                let z = (a - b) / (va + vb).sqrt();
-                assert!(z.abs() < 5.0, "{projection:?} {group} {at}: {a} {b} {z}");
+        for (at, (a, b)) in lit[..48].iter().zip(&path).enumerate() {
+            if b.mean >= 0.03 * most {
+                let z = (a.mean - b.mean) / a.sigma.hypot(b.sigma);
+                assert!(z.abs() < 5.0, "{projection:?} {alpha} {at}: {a:?} {b:?} {z}");
                 squares += z * z;
                 number += 1.0;
             }
         }
-        // Neighbouring pixels share splats, so that σ of a block is a little too small.
-        assert!(squares / number < 2.5, "{projection:?}: {}", squares / number);
-        let total = |film: &Film| {
-            let mean = film.pixels.iter().map(|pixel| pixel.mean()[1]).sum::<f64>();
-            let variance = film.pixels.iter().map(|pixel| pixel.standard_error()[1].powi(2));
-            (mean, variance.sum::<f64>())
-        };
-        let [(a, va), (b, vb)] = [&shown, &found].map(total);
-        let z = (a - b) / (va + vb).sqrt();
-        assert!(z.abs() < 4.0 && (va + vb).sqrt() < 0.05 * b, "{projection:?}: {a} {b} {z}");
+        assert!(squares / number < 2.5, "{projection:?} {alpha}: {}", squares / number);
+        let (a, b) = (lit[48], path[48]);
+        let sigma = a.sigma.hypot(b.sigma);
+        let z = (a.mean - b.mean) / sigma;
+        assert!(z.abs() < 4.0 && sigma < 0.05 * b.mean, "{projection:?} {alpha}: {a:?} {b:?} {z}");
     }
+}
+
+/// Aluminium, about.
+fn metal() -> Optics {
+    Optics::Conductor { n: flat(0.9), k: flat(4.0), factor: 1.0, lacquer: None }
+}
+
+/// A lamp over a floor that it lights by way of the mirror above it alone.
+fn mirrored(floor: impl FnOnce(&mut World), radius: f64, eye: DVec3) -> Scene {
+    let mut world = World::dark();
+    let lamp = world.add(matt(0.0), disc(DVec3::ZERO, DVec3::Y, radius));
+    world.shine(lamp, Strength::Flux(flat(2.0)), 1);
+    world.add(metal(), disc(DVec3::new(0.0, 50.0, 0.0), -DVec3::Y, 25.0));
+    floor(&mut world);
+    let at = DVec3::new(30.0, -50.0, 0.0);
+    world.along(at + eye, -eye)
+}
+
+#[test]
+fn light_that_is_mirrored_to_a_matt_floor_is_met_where_it_lands() {
+    // The image is 100 mm above the lamp, whose intensity is Φ cos/π.
+    let (rho, across, down) = (0.1, 30.0, 150.0_f64);
+    let floor = |world: &mut World| {
+        world.add(matt(rho), plate(-51.0, -50.0));
+    };
+    let scene = mirrored(floor, 0.1, DVec3::new(80.0, 40.0, 30.0));
+    let d2 = across * across + down * down;
+    let cos = down / d2.sqrt();
+    let illuminance = 2.0 * cos / PI * conductor_reflectance(cos, 0.9, 4.0) * cos / (d2 * 1e-6);
+    let lit = Take::lit(1 << 9, USUAL).by_seeds(48, &scene, None);
+    lit.is(rho * illuminance / PI, 0.03);
+}
+
+#[test]
+fn light_that_is_mirrored_to_a_glossy_floor_is_met_where_it_lands() {
+    let floor = |world: &mut World| {
+        world.add_rough(metal(), 0.12, plate(-51.0, -50.0));
+    };
+    let scene = mirrored(floor, 4.0, DVec3::new(15.0, 75.0, 5.0));
+    let path = Take::of(1 << 14, USUAL).luminance(&scene);
+    let lit = Take::lit(1 << 8, USUAL).by_seeds(48, &scene, None);
+    let sigma = lit.sigma.hypot(path.sigma);
+    assert!((lit.mean - path.mean).abs() < 3.0 * sigma, "{lit:?} {path:?}");
+    assert!(sigma < 0.03 * path.mean, "{lit:?} {path:?}");
 }
 
 #[test]
@@ -183,7 +221,7 @@ fn a_surround_is_seen_once_by_both_parts_of_a_picture_together() {
 
 #[test]
 fn walks_that_bring_no_light_end_early_and_a_few_stand_for_all_in_the_ledger() {
-    let scene = frosted(Projection::Pinhole { field_of_view_deg: 20.0 });
+    let scene = frosted(Projection::Pinhole { field_of_view_deg: 20.0 }, 0.2);
     let settings = RenderSettings {
         width: 24,
         height: 16,
@@ -200,7 +238,7 @@ fn walks_that_bring_no_light_end_early_and_a_few_stand_for_all_in_the_ledger() {
 #[test]
 fn the_fewest_samples_show_the_light_behind_a_rough_cover_too() {
     // So few that nothing is allotted: all of the light is the eye's then.
-    let scene = frosted(Projection::Pinhole { field_of_view_deg: 24.0 });
+    let scene = frosted(Projection::Pinhole { field_of_view_deg: 24.0 }, 0.2);
     let mean = |samples: u32, adaptive: bool, seed: u64| {
         let settings = RenderSettings {
             width: 24,

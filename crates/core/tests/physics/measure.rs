@@ -4,11 +4,13 @@
 //! All pixels of a measuring picture look along the same line. Each has random numbers of its own,
 //! so they repeat one measurement independently: their spread gives σ, whatever the sequence.
 
+use std::sync::Arc;
+
 use lamplit_core::render::{render, Method, Progress, RenderSettings, Rendered};
 use lamplit_core::sampling::{PixelFilter, PixelSequence};
 use lamplit_core::scene::Scene;
 use lamplit_core::spectrum::LANES;
-use lamplit_core::transport::PathSettings;
+use lamplit_core::transport::{Guide, PathSettings};
 
 /// How a picture is taken.
 #[derive(Clone)]
@@ -78,6 +80,18 @@ impl Take {
     pub fn lanes(&self, scene: &Scene) -> Vec<Estimate> {
         let means = self.picture(scene).film.band_means();
         (0..LANES).map(|lane| Estimate::of(means.iter().skip(lane).step_by(LANES))).collect()
+    }
+
+    /// The luminance over pictures of so many seeds: what lands is shared by the pixels of one.
+    pub fn by_seeds(&self, seeds: u64, scene: &Scene, guide: Option<&Arc<Guide>>) -> Estimate {
+        let mean = |seed: u64| {
+            let settings = RenderSettings { seed, guide: guide.cloned(), ..self.settings() };
+            let film = render(scene, &settings, &Progress::default()).unwrap().film;
+            let sum: f64 = film.pixels.iter().map(|pixel| pixel.mean()[1]).sum();
+            sum / film.pixels.len() as f64
+        };
+        let values: Vec<f64> = (0..seeds).map(|number| mean(self.seed + number)).collect();
+        Estimate::of(values.iter())
     }
 
     /// The luminance over the picture.

@@ -29,6 +29,10 @@ use crate::math::DVec3;
 
 /// The least α a rough surface can have; what is smoother is smooth.
 pub const LEAST_ALPHA: f64 = 0.001;
+/// From this α on, light from anywhere goes on about everywhere.
+const BROAD: f64 = 0.25;
+/// From this α on, a reflection is spread over a few degrees.
+const SPREADING: f64 = 0.03;
 
 /// A surface cannot be that rough.
 #[derive(Debug, Error, PartialEq)]
@@ -131,6 +135,16 @@ impl AlbedoTable {
             reflector_lobe: Lobe::new(&reflector, &squares),
             interfaces: std::iter::repeat_with(OnceLock::new).take(RATIOS).collect(),
         })
+    }
+
+    /// Whether light from anywhere goes on about everywhere.
+    pub fn is_broad(&self) -> bool {
+        self.alpha() >= BROAD
+    }
+
+    /// Whether light is spread so much that it can be gathered from about where it arrives.
+    pub fn spreads(&self) -> bool {
+        self.alpha() >= SPREADING
     }
 
     /// The roughness α.

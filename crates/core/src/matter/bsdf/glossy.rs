@@ -57,6 +57,10 @@ impl<'a> Glossy<'a> {
         Self { ratios, rough, base, mean_entered }
     }
 
+    pub(super) fn table(&self) -> Option<&AlbedoTable> {
+        self.rough.as_ref().map(|rough| rough.table)
+    }
+
     pub(super) fn mirror(&self, cos_i: f64) -> Option<SampledSpectrum> {
         self.rough.is_none().then(|| self.ratios.map(|eta| dielectric_reflectance(cos_i, eta)))
     }

@@ -62,6 +62,10 @@ impl<'a> Interface<'a> {
         self.rough.is_some()
     }
 
+    pub(super) fn table(&self) -> Option<&AlbedoTable> {
+        self.rough.as_ref().map(|rough| rough.table)
+    }
+
     pub(super) fn mirror(&self, cos_i: f64) -> Option<SampledSpectrum> {
         self.rough.is_none().then(|| self.ratios.map(|eta| dielectric_reflectance(cos_i, eta)))
     }

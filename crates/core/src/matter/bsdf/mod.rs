@@ -72,6 +72,27 @@ impl<'a> Bsdf<'a> {
         }
     }
 
+    /// Whether light from anywhere goes on about everywhere: on matt and very rough surfaces.
+    pub fn is_broad(&self) -> bool {
+        match self {
+            Self::Diffuse(_) | Self::Transmitter(_) => true,
+            Self::Glossy(glossy) => glossy.table().is_none_or(AlbedoTable::is_broad),
+            Self::Reflector(reflector) => reflector.table().is_some_and(AlbedoTable::is_broad),
+            Self::Interface(interface) => interface.table().is_some_and(AlbedoTable::is_broad),
+        }
+    }
+
+    /// Whether light is spread so much that it can be gathered from about where it arrives.
+    pub fn spreads(&self) -> bool {
+        let table = match self {
+            Self::Diffuse(_) | Self::Transmitter(_) => return true,
+            Self::Glossy(glossy) => return glossy.table().is_none_or(AlbedoTable::spreads),
+            Self::Reflector(reflector) => reflector.table(),
+            Self::Interface(interface) => interface.table(),
+        };
+        table.is_some_and(AlbedoTable::spreads)
+    }
+
     /// The share of the light from `wo` that goes to `wi`, per sr of `wo`, with |cos θₒ| and
     /// without the mirror.
     pub fn eval(&self, wi: DVec3, wo: DVec3) -> SampledSpectrum {

@@ -98,6 +98,10 @@ impl<'a> Reflector<'a> {
         self.rough.is_some()
     }
 
+    pub(super) fn table(&self) -> Option<&AlbedoTable> {
+        self.rough.as_ref().map(|rough| rough.table)
+    }
+
     pub(super) fn mirror(&self, cos_i: f64) -> Option<SampledSpectrum> {
         self.rough.is_none().then(|| self.facet.reflectance(cos_i))
     }

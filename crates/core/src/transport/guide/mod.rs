@@ -38,9 +38,13 @@ const TO_LEARN: u64 = 0x2545_F491_4F6C_DD1D;
 const BATCHES: u64 = 32;
 /// How many arrivals are enough, and after how many segments there is an end of it; light that is walled
 /// in where it starts takes none, and ends by its paths.
-const ENOUGH: usize = 1 << 17;
-const MOST_SEGMENTS: u64 = 1 << 21;
+const ENOUGH: usize = 1 << 16;
+const MOST_SEGMENTS: u64 = 1 << 20;
 const MOST_PATHS: u32 = 1 << 15;
+/// After so many segments, where only one in so many ends where a walk may be guided, guiding matters
+/// little.
+const SOON: u64 = 1 << 18;
+const RARE: u64 = 64;
 /// The most arrivals of a region, and the fewest that one can learn from.
 const MOST: usize = 400;
 const FEWEST: usize = 16;
@@ -170,7 +174,8 @@ impl Guide {
             let arrivals = batches.iter().map(|(arrivals, _)| arrivals.len()).sum::<usize>();
             let segments = batches.iter().map(|(_, tally)| tally.segments()).sum::<u64>();
             done += paths;
-            if arrivals >= ENOUGH || segments >= MOST_SEGMENTS || done >= MOST_PATHS {
+            let is_rare = segments >= SOON && (arrivals as u64) < segments / RARE;
+            if arrivals >= ENOUGH || is_rare || segments >= MOST_SEGMENTS || done >= MOST_PATHS {
                 break;
             }
             paths = done;

@@ -23,15 +23,33 @@ pub(super) struct Branch {
     pub depth: u32,
     /// How many times its tree has been split above it.
     pub splits: u32,
+    /// How many branches have parted from it.
+    pub parted: u32,
     /// Whether it has turned at random.
     pub has_scattered: bool,
-    /// Whether what it meets of emitters is left to walks from lights.
-    pub is_left: bool,
+    /// Which of the emitters that it meets count.
+    pub seeks: Seeks,
+    /// Whether it has met light that landed, on a surface of opaque matter; a walk from a light: whether it
+    /// has been on a matt one.
+    pub has_met: bool,
+    /// Whether it has been reflected or turned at random since it started.
+    pub has_turned: bool,
     /// How it got its direction.
     pub came_by: CameBy,
     /// How much more light may come against `ray` than its throughput makes one expect: it was aimed
     /// at what is bright. Roulette goes by both.
     pub promise: f64,
+}
+
+/// Which emitters count that a branch meets; walks from lights bring the light of the others.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Seeks {
+    /// All.
+    All,
+    /// Those that it meets by refraction alone.
+    Refracted,
+    /// None.
+    Nothing,
 }
 
 /// How a branch got its direction: which other technique would have found the same light.
@@ -76,11 +94,19 @@ impl Branch {
             way: 0.0,
             depth: 0,
             splits: 0,
+            parted: 0,
             has_scattered: false,
-            is_left: false,
+            seeks: Seeks::All,
+            has_met: false,
+            has_turned: false,
             came_by,
             promise: 1.0,
         }
+    }
+
+    /// Whether all that it meets of emitters is left to walks from lights.
+    pub fn is_left(&self) -> bool {
+        self.seeks == Seeks::Nothing
     }
 
     /// Go on from a mirror or a smooth interface.
@@ -93,6 +119,7 @@ impl Branch {
     #[must_use]
     pub fn part(&mut self) -> Self {
         self.splits += 1;
-        Self { sampler: self.sampler.fork(self.splits), ..self.clone() }
+        self.parted += 1;
+        Self { sampler: self.sampler.fork(self.parted), ..self.clone() }
     }
 }

@@ -14,7 +14,7 @@ use crate::scene::BodyId;
 use crate::spectrum::SampledSpectrum;
 use crate::transport::guide::{Answered, Arrival};
 
-use super::branch::{Branch, CameBy};
+use super::branch::{Branch, CameBy, Seeks};
 use super::purpose::{Carried, Part, Purpose, Screen};
 use super::vertex::Vertex;
 use super::{Meeting, PathWalk};
@@ -28,8 +28,11 @@ const SAME_POINT: f64 = 1e-5;
 /// How often a direction is drawn towards learned light, where there is some.
 const GUIDED: f64 = 0.5;
 
+/// How many times both ways on are followed by what was drawn so.
+const AIMED_SPLITS: u32 = 1;
+
 /// How often directions are drawn towards learned light, and towards a bright background.
-struct Aims<'a> {
+pub(super) struct Aims<'a> {
     background: f64,
     guided: f64,
     light: Option<Answered<'a>>,
@@ -98,18 +101,37 @@ impl<'a> PathWalk<'a> {
             return false;
         }
         let lanes = self.lanes(branch.throughput);
-        self.show_arrival(branch, vertex);
-        if branch.depth == 0 && vertex.is_boundary && self.purpose.leaves_rough() {
-            branch.is_left = true;
-            if !self.survives_unseen(branch) {
+        if !self.widens(branch) {
+            return false;
+        }
+        let was_left = self.all_is_left(branch);
+        let ground = vertex.ground();
+        if let Some(ground) = &ground {
+            if !self.land(branch, vertex, ground) {
                 return false;
             }
+            self.meet(branch, vertex, &lanes, ground);
+        }
+        let may_be_guided = match &ground {
+            None => true,
+            Some(ground) if ground.is_matt => branch.depth > 0 && !branch.has_turned,
+            Some(_) => !vertex.is_boundary && !branch.has_turned,
+        };
+        if may_be_guided {
+            self.show_arrival(branch, vertex);
+        }
+        branch.has_turned = true;
+        if branch.depth == 0 && vertex.is_boundary && self.purpose.leaves_rough() {
+            branch.seeks = Seeks::Nothing;
+        }
+        if !was_left && self.all_is_left(branch) && !self.survives_unseen(branch) {
+            return false;
         }
         if vertex.is_boundary {
             self.show(branch, vertex);
         }
         let aims = self.aims(branch, vertex, &lanes);
-        self.see_emitters(branch, vertex, &lanes, &aims);
+        self.see_emitters(branch, vertex, &lanes, Some(&aims));
         let [technique, u, v, w] = branch.sampler.next_4d();
         let drawn = if technique < aims.background {
             self.scene.background.aim(vertex.position, [u, v, w])
@@ -124,6 +146,11 @@ impl<'a> PathWalk<'a> {
         let own = vertex.pdf(wo, &lanes);
         let pdf = self.mixed(vertex, wo, own, &aims);
         branch.way = 0.0;
+        if technique >= aims.background && aims.guide(technique).is_some() {
+            // What it was aimed at may be a mirror image: both ways on count there.
+            branch.splits =
+                branch.splits.min(self.settings.split_depth.saturating_sub(AIMED_SPLITS));
+        }
         branch.has_scattered = true;
         branch.came_by = CameBy::Scattering { from: vertex.position, pdf };
         branch.promise = (pdf / own).min(pdf * 4.0 * PI).max(1.0);
@@ -146,6 +173,21 @@ impl<'a> PathWalk<'a> {
             let arrival = Arrival { position, direction, way, weight };
             receive(Carried::Arrived(arrival), branch.throughput);
         }
+    }
+
+    /// Whether all that a branch meets of emitters is left to walks from lights.
+    fn all_is_left(&self, branch: &Branch) -> bool {
+        branch.is_left() && (branch.has_met || self.purpose.photons().is_none())
+    }
+
+    /// Whether a branch goes on that is reflected or turned at random: a narrow one leaves emitters to
+    /// others from there on.
+    pub(super) fn widens(&self, branch: &mut Branch) -> bool {
+        if branch.seeks != Seeks::Refracted {
+            return true;
+        }
+        branch.seeks = Seeks::Nothing;
+        self.survives_unseen(branch)
     }
 
     /// Whether a branch goes on whose emitters are left to others. Under a dark background it brings no
@@ -193,7 +235,7 @@ impl<'a> PathWalk<'a> {
             return Aims { background: 0.0, guided: 0.0, light: None };
         }
         let background = self.scene.background.aim_share(vertex.position);
-        let guide = self.purpose.guide().filter(|_| !branch.is_left);
+        let guide = self.purpose.guide().filter(|_| !branch.is_left());
         let region = guide.and_then(|guide| guide.at(vertex.position));
         let Some(region) = region else {
             return Aims { background, guided: 0.0, light: None };
@@ -218,17 +260,18 @@ impl<'a> PathWalk<'a> {
         pdf
     }
 
-    /// Add what one point of the emitters sends straight to a vertex.
-    fn see_emitters(
+    /// Add what one point of the emitters sends straight to a vertex; all of it where nothing `aims` at
+    /// it besides.
+    pub(super) fn see_emitters(
         &mut self,
         branch: &mut Branch,
         vertex: &Vertex<'_>,
         lanes: &SampledSpectrum,
-        aims: &Aims<'_>,
+        aims: Option<&Aims<'_>>,
     ) {
         let emitters = &self.scene.emitters;
         let is_looked_for = self.purpose.looks_for_light() && !emitters.is_empty();
-        if !is_looked_for || branch.is_left || branch.depth >= self.settings.max_depth {
+        if !is_looked_for || branch.is_left() || branch.depth >= self.settings.max_depth {
             return;
         }
         let [u, v, w, _] = branch.sampler.next_4d();
@@ -246,8 +289,10 @@ impl<'a> PathWalk<'a> {
             return;
         };
         let emitted = if emitter.per_n2 { emitted / (index * index) } else { emitted };
-        let own = vertex.pdf(seen.direction, lanes);
-        let other = self.mixed(vertex, seen.direction, own, aims);
+        let other = aims.map_or(0.0, |aims| {
+            let own = vertex.pdf(seen.direction, lanes);
+            self.mixed(vertex, seen.direction, own, aims)
+        });
         let arriving = branch.throughput * answer * transmitted * emitted;
         self.add_light(emitter.group, arriving * (1.0 / (seen.pdf + other)));
     }

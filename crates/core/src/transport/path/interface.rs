@@ -48,8 +48,7 @@ impl PathWalk<'_> {
                 parted = self.wait(other);
             }
         }
-        mirror(branch, meeting, &reflected);
-        Ways { goes_on: true, parted }
+        Ways { goes_on: self.mirror(branch, meeting, &reflected), parted }
     }
 
     /// Refract a branch; whether it can be. Where lanes go different ways, one of them goes on in the
@@ -93,8 +92,7 @@ impl PathWalk<'_> {
             return Ways::one(self.scatter(branch, &vertex));
         };
         if !bsdf.scatters() || !self.purpose.scatters() {
-            mirror(branch, meeting, &mirrored);
-            return Ways::one(true);
+            return Ways::one(self.mirror(branch, meeting, &mirrored));
         }
         let [choice, ..] = branch.sampler.next_4d();
         let scattered = bsdf.albedo(Vertex::local(meeting));
@@ -113,8 +111,21 @@ impl PathWalk<'_> {
                 parted = self.wait(other);
             }
         }
-        mirror(branch, meeting, &mirrored);
-        Ways { goes_on: true, parted }
+        Ways { goes_on: self.mirror(branch, meeting, &mirrored), parted }
+    }
+
+    /// Reflect a branch; whether it goes on.
+    fn mirror(
+        &self,
+        branch: &mut Branch,
+        meeting: &Meeting,
+        reflectance: &SampledSpectrum,
+    ) -> bool {
+        branch.throughput *= *reflectance;
+        let wo = meeting.on_near_side(reflect(meeting.wi, meeting.normal));
+        branch.deflect(meeting.hit.point.leave_along(wo), wo);
+        branch.has_turned = true;
+        self.widens(branch)
     }
 
     /// The refractive index of what fills a place.
@@ -122,10 +133,4 @@ impl PathWalk<'_> {
         let medium = self.scene.medium(interior);
         medium.map_or(SampledSpectrum::ONE, |body| body.index.at(self.wavelengths))
     }
-}
-
-fn mirror(branch: &mut Branch, meeting: &Meeting, reflectance: &SampledSpectrum) {
-    branch.throughput *= *reflectance;
-    let wo = meeting.on_near_side(reflect(meeting.wi, meeting.normal));
-    branch.deflect(meeting.hit.point.leave_along(wo), wo);
 }

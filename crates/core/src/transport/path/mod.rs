@@ -23,6 +23,7 @@
 mod branch;
 mod direct;
 mod interface;
+mod landing;
 mod medium;
 mod purpose;
 mod vertex;

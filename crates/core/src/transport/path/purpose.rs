@@ -5,14 +5,17 @@ use super::branch::Branch;
 use crate::math::{DVec2, Ray};
 use crate::spectrum::SampledSpectrum;
 use crate::transport::guide::{Arrival, Guide};
+use crate::transport::photons::{Landing, Photons};
 use crate::transport::Gathered;
 
 /// What a walk from a light shows of the flux that it carries.
 pub enum Carried<'r> {
     /// It leaves the scene along a ray.
     Left(&'r Ray),
-    /// It arrives where the walk turns at random.
+    /// It arrives where the walk turns at random, but for matt surfaces.
     Arrived(Arrival),
+    /// It lands on a matt surface, not straight from where it started.
+    Landed(Landing),
     /// A camera sees it at this place of its image, in pixels: the radiance there over this density.
     Shown(DVec2),
 }
@@ -44,6 +47,8 @@ pub struct Eye<'a> {
     /// Whether walks from lights show what emitters send through rough boundaries that are the first
     /// thing the eye sees: then it is left to them.
     pub leaves_rough: bool,
+    /// What landed on matt surfaces: there, emitters are left to it.
+    pub photons: Option<&'a Photons>,
 }
 
 /// The image on which a walk from a light shows what a camera sees of it, in pixels.
@@ -78,8 +83,8 @@ impl<'a> Purpose<'a> {
     pub fn counts(&self, branch: &Branch) -> bool {
         match self {
             Self::Eye(eye) => match eye.part {
-                Part::All | Part::Specular => !branch.is_left,
-                Part::Scattered => branch.has_scattered && !branch.is_left,
+                Part::All | Part::Specular => !branch.is_left(),
+                Part::Scattered => branch.has_scattered && !branch.is_left(),
             },
             Self::Light(..) => false,
         }
@@ -88,6 +93,14 @@ impl<'a> Purpose<'a> {
     /// Whether a walk's light at a rough boundary, the first thing seen, is left to walks from lights.
     pub fn leaves_rough(&self) -> bool {
         matches!(self, Self::Eye(Eye { leaves_rough: true, .. }))
+    }
+
+    /// What landed on matt surfaces.
+    pub fn photons(&self) -> Option<&'a Photons> {
+        match self {
+            Self::Eye(eye) => eye.photons,
+            Self::Light(..) => None,
+        }
     }
 
     /// The image on which a walk from a light shows itself.

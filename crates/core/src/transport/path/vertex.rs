@@ -20,6 +20,17 @@ pub(super) struct Vertex<'a> {
     place: Place<'a>,
 }
 
+/// A surface on which light lands and is met.
+#[derive(Clone, Copy)]
+pub(super) struct Ground {
+    /// Whether it is of opaque matter, and matt or very rough.
+    pub is_matt: bool,
+    /// The normals on the side that the branch comes from.
+    pub true_normal: DVec3,
+    /// The shading normal.
+    pub normal: DVec3,
+}
+
 #[expect(clippy::large_enum_variant, reason = "made at every hit: a box would cost an allocation")]
 enum Place<'a> {
     Surface {
@@ -81,6 +92,14 @@ impl<'a> Vertex<'a> {
         }
     }
 
+    /// The share of the light that goes on, about.
+    pub fn albedo(&self) -> SampledSpectrum {
+        match &self.place {
+            Place::Surface { wi, bsdf, .. } => bsdf.albedo(*wi),
+            Place::Body { .. } => SampledSpectrum::ONE,
+        }
+    }
+
     /// The density of `sample`, per steradian.
     pub fn pdf(&self, wo: DVec3, lanes: &SampledSpectrum) -> f64 {
         match &self.place {
@@ -117,6 +136,16 @@ impl<'a> Vertex<'a> {
             Place::Surface { true_normal, .. } => wo - *true_normal * (2.0 * wo.dot(*true_normal)),
             Place::Body { .. } => wo,
         }
+    }
+
+    /// How walks from the eye and from lights meet there.
+    pub fn ground(&self) -> Option<Ground> {
+        let Place::Surface { true_normal, frame, bsdf, .. } = &self.place else {
+            return None;
+        };
+        let is_matt = bsdf.is_broad() && !self.is_boundary;
+        let is_met = if self.is_boundary { bsdf.is_broad() } else { bsdf.spreads() };
+        is_met.then_some(Ground { is_matt, true_normal: *true_normal, normal: frame.z_axis })
     }
 
     /// Where a ray along `wo` starts, and in which bodies.

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0 OR MIT
+//! [`Landings`]: for each sample of the pixels, the light that lands on surfaces.
+
+use std::sync::Arc;
+
+use crate::math::DVec2;
+use crate::sampling::PixelSequence;
+use crate::scene::{Interior, Scene};
+use crate::transport::{
+    Crowd, Eye, FluxError, Gathered, Landed, LightSource, LightWalk, Part, PathSettings, PathWalk,
+    Photons, Tally,
+};
+
+use super::settings::RenderSettings;
+
+/// Keeps the random numbers of phases and trials apart from all others.
+const TO_CHOOSE: u64 = 0xBB67_AE85_84CA_A73B;
+/// Walks from the eye that tell how many meet what landed.
+const TRIALS: usize = 1 << 11;
+/// Walks from lights for each such walk from the eye.
+const PER_MEETING: f64 = 6.0;
+/// About how much may land for one sample of the pixels: a bound to the memory.
+const MOST_LANDED: f64 = 262_144.0;
+/// The walks of the trial.
+const OF_TRIAL: u32 = 1 << 15;
+/// The fewest walks from lights, and the fewest for each walk from the eye, whatever trials tell: they
+/// can miss what is small.
+const FEWEST: f64 = 1024.0;
+const LEAST_SHARE: f64 = 0.5;
+/// The first sample's radius is that of so many pixels at the mean distance of what landed, or that in
+/// which one of its photons usually lands, whichever is more.
+const PIXELS: f64 = 3.0;
+/// How many of the trial's photons tell how far apart they land.
+const PHOTONS: usize = 4;
+/// Radii fall with the sample's number to this power: with −1/6, noise and blur vanish at one rate.
+const SHRINKING: f64 = -1.0 / 6.0;
+
+/// For each sample of the pixels, the light that lands on surfaces.
+pub(super) struct Landings<'a> {
+    scene: &'a Scene,
+    walk: LightWalk<'a>,
+    settings: &'a RenderSettings,
+    /// Walks from lights for each walk from the eye.
+    share: f64,
+    most_paths: f64,
+    first_radius: f64,
+    crowd: Arc<Crowd>,
+}
+
+impl<'a> Landings<'a> {
+    /// See how many walks from an eye in `interior` meet what lands, and where that is.
+    ///
+    /// # Errors
+    /// There is no visible flux.
+    pub fn new(
+        scene: &'a Scene,
+        source: &'a LightSource,
+        path: PathSettings,
+        settings: &'a RenderSettings,
+        interior: Interior,
+    ) -> Result<Self, FluxError> {
+        let walk = LightWalk::new(scene, source, path.from_lights())?;
+        let share = (PER_MEETING * meetings(scene, path, settings, interior)).max(LEAST_SHARE);
+        let crowd = Arc::default();
+        let mut own =
+            Self { scene, walk, settings, share, most_paths: 0.0, first_radius: 0.0, crowd };
+        let trial = own.land(u32::MAX, OF_TRIAL);
+        let distance = trial.mean_distance(scene.camera.position());
+        let pixels = PIXELS * scene.camera.pixel_mm(distance, settings.height);
+        own.most_paths = (MOST_LANDED / trial.per_path().max(1.0)).max(FEWEST);
+        let fewer = f64::from(own.paths(settings.pixels() as usize)) / f64::from(OF_TRIAL);
+        let apart = trial.spacing(PHOTONS) / (PHOTONS as f64 * fewer).sqrt();
+        own.first_radius = pixels.max(apart);
+        own.crowd = Arc::new(Photons::new(trial, own.first_radius, Arc::default()).crowd());
+        Ok(own)
+    }
+
+    /// The light that lands for sample `number` of so many pixels.
+    pub fn of_sample(&self, number: u32, pixels: usize) -> Photons {
+        let radius = self.first_radius * (f64::from(number) + 1.0).powf(SHRINKING);
+        Photons::new(self.land(number, self.paths(pixels)), radius, Arc::clone(&self.crowd))
+    }
+
+    /// How many walks from lights a sample of so many pixels has.
+    fn paths(&self, pixels: usize) -> u32 {
+        (self.share * pixels as f64).clamp(FEWEST, self.most_paths) as u32
+    }
+
+    fn land(&self, number: u32, paths: u32) -> Landed {
+        let seed = self.settings.seed;
+        let sampler = PixelSequence::Sobol.sampler(seed ^ TO_CHOOSE, 0, number);
+        let wavelengths = sampler.wavelengths(self.scene.phases());
+        Landed::walk(self.scene, &self.walk, (seed, number), wavelengths, paths)
+    }
+}
+
+/// How many times a walk from the eye meets what landed, by what is sent on there.
+fn meetings(
+    scene: &Scene,
+    path: PathSettings,
+    settings: &RenderSettings,
+    interior: Interior,
+) -> f64 {
+    let nothing = Photons::none();
+    let mut gathered = Gathered::new(0);
+    let mut tally = Tally::new(scene.bodies.len());
+    let pixels = settings.pixels() as usize;
+    let (width, trials) = (settings.width as usize, TRIALS.min(pixels));
+    let mut met = 0.0;
+    for trial in 0..trials {
+        let pixel = trial * pixels / trials;
+        let place = DVec2::new((pixel % width) as f64 + 0.5, (pixel / width) as f64 + 0.5);
+        let sampler = PixelSequence::Sobol.sampler(settings.seed ^ TO_CHOOSE, pixel as u64, 0);
+        let wavelengths = sampler.wavelengths(scene.phases());
+        let ray = scene.camera.ray(place, sampler.lens(), settings.width, settings.height);
+        gathered.clear();
+        let eye = Eye {
+            gathered: &mut gathered,
+            part: Part::Scattered,
+            guide: None,
+            leaves_rough: false,
+            photons: Some(&nothing),
+        };
+        let start = (ray, interior);
+        PathWalk::gather(scene, path, wavelengths, sampler, &mut tally, eye, start);
+        met += gathered.met.min(1.0);
+    }
+    met / trials.max(1) as f64
+}

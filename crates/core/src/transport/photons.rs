@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0 OR MIT
+//! [`Photons`]: light that landed on surfaces, kept for walks from the eye to meet there.
+//!
+//! A matt floor behind a lens is lit by ways that no walk from the eye finds: it would have to leave
+//! in just the direction that the lens mirrors into a die. Walks from the lights land there by
+//! themselves. So the two meet: a walk from the eye takes the light that landed within a small disc
+//! round the place where it arrives. Light that came straight from an emitter is not kept for matt
+//! surfaces, nor light that came by refraction alone for glossy ones: walks from the eye find
+//! these without any blur.
+//!
+//! Every sample of the pixels has photons of its own, so that samples stay independent, and its discs
+//! are smaller than those before it: the blur goes to nothing, and so does the noise.
+//!
+//! Source: H. Jensen, "Global Illumination using Photon Maps", EGWR 1996; T. Hachisuka and H. Jensen,
+//! "Stochastic Progressive Photon Mapping", ACM TOG 28(5), 2009; C. Knaus and M. Zwicker, "Progressive
+//! Photon Mapping: A Probabilistic Approach", ACM TOG 30(3), 2011 (radii that shrink by themselves).
+
+use std::collections::HashMap;
+use std::f64::consts::PI;
+use std::ops::Range;
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::flux::LightWalk;
+use super::ledger::Ledger;
+use super::path::Carried;
+use super::tally::Tally;
+use crate::math::{DVec3, IVec3};
+use crate::sampling::PixelSequence;
+use crate::scene::Scene;
+use crate::spectrum::{SampledSpectrum, SampledWavelengths};
+
+/// Keeps the random numbers of these walks and of all others apart.
+const TO_LAND: u64 = 0x6A09_E667_F3BC_C909;
+/// Walks that land are independent of threads in so many batches.
+const BATCHES: u32 = 16;
+/// A disc that more photons than these are expected in is made smaller.
+const CROWD: f64 = 32.0;
+/// What lies farther above or below a surface than this share of a disc's radius is on another one.
+const THICKNESS: f64 = 0.25;
+/// Surfaces whose normals are farther apart than this cosine are not the same.
+const SAME_SURFACE: f64 = 0.9;
+const M2_PER_MM2: f64 = 1e-6;
+
+/// Where light landed.
+#[derive(Clone, Copy, Debug)]
+pub struct Landing {
+    /// The place, in mm.
+    pub position: DVec3,
+    /// The unit vector back to where it came from.
+    pub direction: DVec3,
+    /// The surface's normal, on either side.
+    pub normal: DVec3,
+}
+
+/// Light that landed.
+#[derive(Clone, Copy, Debug)]
+struct Photon {
+    at: Landing,
+    /// Its share of the spectral flux of all walks together.
+    flux: SampledSpectrum,
+    group: usize,
+}
+
+/// The light that landed from some walks.
+#[derive(Debug)]
+pub struct Landed {
+    photons: Vec<Photon>,
+    wavelengths: SampledWavelengths,
+    /// How many walks there were, and their segments.
+    paths: u32,
+    segments: u64,
+}
+
+impl Landed {
+    /// Walk light of the lanes `wavelengths`, with random numbers that no other `number` has.
+    pub fn walk(
+        scene: &Scene,
+        walk: &LightWalk<'_>,
+        (seed, number): (u64, u32),
+        wavelengths: SampledWavelengths,
+        paths: u32,
+    ) -> Self {
+        let each = paths.div_ceil(BATCHES);
+        let share = 1.0 / f64::from(each * BATCHES);
+        let batches: Vec<(Vec<Photon>, u64)> = (0..BATCHES)
+            .into_par_iter()
+            .map(|batch| {
+                let mut tally = Tally::new(scene.bodies.len());
+                let mut ledgers = vec![Ledger::new(scene.bodies.len()); scene.groups];
+                let mut photons = Vec::new();
+                let own = u64::from(number) * u64::from(BATCHES) + u64::from(batch);
+                for path in 0..each {
+                    let sampler = PixelSequence::Sobol.sampler(seed ^ TO_LAND, own, path);
+                    let sampler = sampler.on_phase(wavelengths);
+                    walk.walk(sampler, &mut tally, &mut ledgers, &mut |part| {
+                        if let Carried::Landed(at) = part.what {
+                            photons.push(Photon { at, flux: part.flux * share, group: part.group });
+                        }
+                    });
+                }
+                photons.retain(|photon| photon.flux.is_radiance());
+                (photons, tally.segments())
+            })
+            .collect();
+        let segments = batches.iter().map(|(_, segments)| segments).sum();
+        let photons = batches.into_iter().flat_map(|(own, _)| own).collect();
+        Self { photons, wavelengths, paths: each * BATCHES, segments }
+    }
+
+    /// How often a walk landed, on average.
+    pub fn per_path(&self) -> f64 {
+        self.photons.len() as f64 / f64::from(self.paths.max(1))
+    }
+
+    /// How far from `eye` it landed on average, in mm.
+    pub fn mean_distance(&self, eye: DVec3) -> f64 {
+        let sum: f64 = self.photons.iter().map(|photon| photon.at.position.distance(eye)).sum();
+        sum / self.photons.len().max(1) as f64
+    }
+
+    /// The usual distance, in mm, within which `count` others landed.
+    pub fn spacing(&self, count: usize) -> f64 {
+        const PROBES: usize = 64;
+        let step = self.photons.len().div_ceil(PROBES).max(1);
+        let probes: Vec<&Photon> = self.photons.iter().step_by(step).collect();
+        let mut distances: Vec<f64> = probes
+            .par_iter()
+            .filter_map(|probe| {
+                let to = |photon: &Photon| photon.at.position.distance(probe.at.position);
+                let mut all: Vec<f64> = self.photons.iter().map(to).collect();
+                (all.len() > count).then(|| *all.select_nth_unstable_by(count, f64::total_cmp).1)
+            })
+            .collect();
+        distances.sort_by(f64::total_cmp);
+        distances.get(distances.len() / 2).copied().unwrap_or(0.0)
+    }
+}
+
+/// The light that landed for one sample of the pixels.
+#[derive(Debug)]
+pub struct Photons {
+    landed: Landed,
+    /// Which of them lie in each cell of a grid; cells are as wide as a disc's radius.
+    cells: HashMap<IVec3, Range<usize>>,
+    radius: f64,
+    crowd: Arc<Crowd>,
+}
+
+impl Photons {
+    /// What `landed`, to be met within discs of a `radius` in mm, smaller ones in a `crowd`.
+    pub fn new(mut landed: Landed, radius: f64, crowd: Arc<Crowd>) -> Self {
+        let radius = radius.max(f64::MIN_POSITIVE);
+        landed.photons.sort_by_cached_key(|photon| cell(photon.at.position, radius).to_array());
+        let mut cells = HashMap::new();
+        let mut first = 0;
+        let at = |photon: &Photon| cell(photon.at.position, radius);
+        for run in landed.photons.chunk_by(|a, b| at(a) == at(b)) {
+            cells.insert(at(&run[0]), first..first + run.len());
+            first += run.len();
+        }
+        Self { landed, cells, radius, crowd }
+    }
+
+    /// Nothing landed.
+    pub fn none() -> Self {
+        let wavelengths = SampledWavelengths { phase: 0 };
+        let nothing = Landed { photons: Vec::new(), wavelengths, paths: 0, segments: 0 };
+        Self::new(nothing, 1.0, Arc::default())
+    }
+
+    /// The lanes on which it can be met.
+    pub fn wavelengths(&self) -> SampledWavelengths {
+        self.landed.wavelengths
+    }
+
+    /// How many segments were walked for it.
+    pub fn segments(&self) -> u64 {
+        self.landed.segments
+    }
+
+    /// Where more lands than it takes, for other walks.
+    pub fn crowd(&self) -> Crowd {
+        let per_path = 1.0 / f64::from(self.landed.paths.max(1));
+        // Of a flat surface, a cell holds about its square.
+        let density = |own: &Range<usize>| own.len() as f64 * per_path / self.radius.powi(2);
+        let all = self.cells.iter().map(|(cell, own)| (*cell, density(own))).collect();
+        Crowd { width: self.radius, densities: all }
+    }
+
+    /// Hand on what landed round `position` on a surface of this `normal`: where it came from, its flux
+    /// per m² there, and its light group.
+    pub fn round(
+        &self,
+        position: DVec3,
+        normal: DVec3,
+        mut found: impl FnMut(&Landing, SampledSpectrum, usize),
+    ) {
+        let radius = self.radius.min(self.crowd.radius(position, self.landed.paths));
+        let (middle, r2) = (cell(position, self.radius), radius * radius);
+        for index in 0..27 {
+            let step = IVec3::new(index % 3 - 1, index / 3 % 3 - 1, index / 9 - 1);
+            let Some(own) = self.cells.get(&(middle + step)) else {
+                continue;
+            };
+            for Photon { at, flux, group } in &self.landed.photons[own.clone()] {
+                let d2 = at.position.distance_squared(position) / r2;
+                let off = (at.position - position).dot(normal).abs();
+                let is_same = at.normal.dot(normal).abs() > SAME_SURFACE;
+                if d2 < 1.0 && is_same && off < THICKNESS * radius {
+                    // Most in the middle, none at the rim; 1 over the disc.
+                    let per_m2 = 2.0 * (1.0 - d2) / (PI * r2 * M2_PER_MM2);
+                    found(at, *flux * per_m2, *group);
+                }
+            }
+        }
+    }
+}
+
+/// Where light lands closely, as other walks have shown: what decides about discs must not be what
+/// is met in them.
+#[derive(Clone, Debug, Default)]
+pub struct Crowd {
+    width: f64,
+    /// How much lands per mm² and walk, by cells.
+    densities: HashMap<IVec3, f64>,
+}
+
+impl Crowd {
+    /// The radius of a disc on which as many of so many walks land as it takes.
+    fn radius(&self, position: DVec3, paths: u32) -> f64 {
+        if self.densities.is_empty() {
+            return f64::INFINITY;
+        }
+        let density = self.densities.get(&cell(position, self.width));
+        density.map_or(f64::INFINITY, |density| (CROWD / (PI * density * f64::from(paths))).sqrt())
+    }
+}
+
+fn cell(position: DVec3, width: f64) -> IVec3 {
+    (position / width).floor().as_ivec3()
+}
