@@ -46,7 +46,7 @@ def bulb(scene_of: Callable[..., Any], *, roughness: float = 0.0, **image: Any) 
 @pytest.mark.parametrize("roughness", [0.0, 0.3])
 def test_lit_and_path_make_the_same_picture(scene_of: Callable[..., Any], roughness: float) -> None:
     scene = bulb(scene_of, roughness=roughness)
-    lit = ll.render(scene, samples=512)
+    lit = ll.render(scene, samples=1536)
     path = ll.render(scene, method="path", samples=2048)
     assert lit.method == "lit"
     totals = [image.xyz[..., 1].mean() for image in (lit, path)]
@@ -57,13 +57,29 @@ def test_lit_and_path_make_the_same_picture(scene_of: Callable[..., Any], roughn
 
 
 def test_the_parts_of_a_lit_picture_are_told_and_add_up(scene_of: Callable[..., Any]) -> None:
-    image = ll.render(bulb(scene_of, roughness=0.3))
+    image = ll.render(bulb(scene_of, roughness=0.2))
     found = image.statistics["found_cd_m2"]
-    assert set(found) == {"specular", "scattered", "shown_by_lights"}
+    assert set(found) == {"specular", "scattered", "landed", "shown_by_lights"}
     assert sum(found.values()) == pytest.approx(image.xyz[..., 1].mean(), rel=1e-12)
     assert found["shown_by_lights"] > 0.0
-    smooth = ll.render(bulb(scene_of)).statistics["found_cd_m2"]
-    assert set(smooth) == {"specular", "scattered"}
+    rougher = ll.render(bulb(scene_of, roughness=0.3)).statistics["found_cd_m2"]
+    assert set(rougher) == {"specular", "scattered", "landed"}
+    assert rougher["landed"] > 0.5 * sum(rougher.values())
+    path = ll.render(bulb(scene_of), method="path").statistics["found_cd_m2"]
+    assert set(path) == {"by_eye"}
+
+
+def test_what_landed_takes_memory_that_is_foretold(scene_of: Callable[..., Any]) -> None:
+    small, large = (
+        memory_estimate(bulb(scene_of, width=side, height=side)).film_bytes for side in (10, 1000)
+    )
+    # Two films and 16 pictures, and twice 216 bytes: for 12 photons a pixel, for 2^18 at most.
+    per_pixel = 2 * 112 + 16 * 24
+    assert small == 100 * (per_pixel + 12 * 432)
+    assert large == 1_000_000 * per_pixel + 2**18 * 432
+
+
+def test_path_finds_all_by_the_eye(scene_of: Callable[..., Any]) -> None:
     path = ll.render(bulb(scene_of), method="path").statistics["found_cd_m2"]
     assert set(path) == {"by_eye"}
 
@@ -115,5 +131,5 @@ def test_the_few_samples_of_a_frosted_bulb_show_its_light(scene_of: Callable[...
 
 def test_the_films_of_a_lit_picture_are_foretold(scene_of: Callable[..., Any]) -> None:
     lit, path = (memory_estimate(bulb(scene_of, method=method)) for method in ("auto", "path"))
-    # Two films of 112 bytes a pixel instead of one, and 16 times three doubles.
-    assert lit.film_bytes - path.film_bytes == (112 + 16 * 24) * 12 * 10
+    # Two films of 112 bytes a pixel instead of one, 16 times three doubles, and what landed.
+    assert lit.film_bytes - path.film_bytes == (112 + 16 * 24 + 12 * 432) * 12 * 10

@@ -71,14 +71,15 @@ impl<'a> Landings<'a> {
         let fewer = f64::from(own.paths(settings.pixels() as usize)) / f64::from(OF_TRIAL);
         let apart = trial.spacing(PHOTONS) / (PHOTONS as f64 * fewer).sqrt();
         own.first_radius = pixels.max(apart);
-        own.crowd = Arc::new(Photons::new(trial, own.first_radius, Arc::default()).crowd());
+        own.crowd = Arc::new(Photons::new(trial, own.first_radius, 1.0, Arc::default()).crowd());
         Ok(own)
     }
 
     /// The light that lands for sample `number` of so many pixels.
     pub fn of_sample(&self, number: u32, pixels: usize) -> Photons {
-        let radius = self.first_radius * (f64::from(number) + 1.0).powf(SHRINKING);
-        Photons::new(self.land(number, self.paths(pixels)), radius, Arc::clone(&self.crowd))
+        let shrunk = (f64::from(number) + 1.0).powf(SHRINKING);
+        let landed = self.land(number, self.paths(pixels));
+        Photons::new(landed, self.first_radius, shrunk, Arc::clone(&self.crowd))
     }
 
     /// How many walks from lights a sample of so many pixels has.

@@ -4,9 +4,8 @@
 //! A matt floor behind a lens is lit by ways that no walk from the eye finds: it would have to leave
 //! in just the direction that the lens mirrors into a die. Walks from the lights land there by
 //! themselves. So the two meet: a walk from the eye takes the light that landed within a small disc
-//! round the place where it arrives. Light that came straight from an emitter is not kept for matt
-//! surfaces, nor light that came by refraction alone for glossy ones: walks from the eye find
-//! these without any blur.
+//! round the place where it arrives. Light that came to opaque matter by refraction alone, or straight,
+//! is not kept: walks from the eye find it without any blur.
 //!
 //! Every sample of the pixels has photons of its own, so that samples stay independent, and its discs
 //! are smaller than those before it: the blur goes to nothing, and so does the noise.
@@ -28,7 +27,7 @@ use super::path::Carried;
 use super::tally::Tally;
 use crate::math::{DVec3, IVec3};
 use crate::sampling::PixelSequence;
-use crate::scene::Scene;
+use crate::scene::{BodyId, Scene};
 use crate::spectrum::{SampledSpectrum, SampledWavelengths};
 
 /// Keeps the random numbers of these walks and of all others apart.
@@ -37,6 +36,8 @@ const TO_LAND: u64 = 0x6A09_E667_F3BC_C909;
 const BATCHES: u32 = 16;
 /// A disc that more photons than these are expected in is made smaller.
 const CROWD: f64 = 32.0;
+/// A first disc is no larger than this share of the middle of its body's three extents.
+const OF_BODY: f64 = 0.25;
 /// What lies farther above or below a surface than this share of a disc's radius is on another one.
 const THICKNESS: f64 = 0.25;
 /// Surfaces whose normals are farther apart than this cosine are not the same.
@@ -52,6 +53,8 @@ pub struct Landing {
     pub direction: DVec3,
     /// The surface's normal, on either side.
     pub normal: DVec3,
+    /// The body whose surface it is.
+    pub body: BodyId,
 }
 
 /// Light that landed.
@@ -120,6 +123,22 @@ impl Landed {
         sum / self.photons.len().max(1) as f64
     }
 
+    /// The largest radius of a first disc on each body: a share of its middle extent, as far as light landed
+    /// there.
+    fn largest_discs(&self) -> HashMap<BodyId, f64> {
+        let mut boxes = HashMap::<BodyId, [DVec3; 2]>::new();
+        for Photon { at: Landing { position, body, .. }, .. } in &self.photons {
+            let [low, high] = boxes.entry(*body).or_insert([*position; 2]);
+            (*low, *high) = (low.min(*position), high.max(*position));
+        }
+        let radius = |[low, high]: [DVec3; 2]| {
+            let mut extents = (high - low).to_array();
+            extents.sort_by(f64::total_cmp);
+            OF_BODY * extents[1]
+        };
+        boxes.into_iter().map(|(body, own)| (body, radius(own))).collect()
+    }
+
     /// The usual distance, in mm, within which `count` others landed.
     pub fn spacing(&self, count: usize) -> f64 {
         const PROBES: usize = 64;
@@ -145,13 +164,16 @@ pub struct Photons {
     /// Which of them lie in each cell of a grid; cells are as wide as a disc's radius.
     cells: HashMap<IVec3, Range<usize>>,
     radius: f64,
+    /// How much smaller discs are than the first ones.
+    shrunk: f64,
     crowd: Arc<Crowd>,
 }
 
 impl Photons {
-    /// What `landed`, to be met within discs of a `radius` in mm, smaller ones in a `crowd`.
-    pub fn new(mut landed: Landed, radius: f64, crowd: Arc<Crowd>) -> Self {
-        let radius = radius.max(f64::MIN_POSITIVE);
+    /// What `landed`, to be met within discs that are `shrunk` from the radius of the `first`, in mm;
+    /// smaller ones in a `crowd`.
+    pub fn new(mut landed: Landed, first: f64, shrunk: f64, crowd: Arc<Crowd>) -> Self {
+        let radius = (first * shrunk).max(f64::MIN_POSITIVE);
         landed.photons.sort_by_cached_key(|photon| cell(photon.at.position, radius).to_array());
         let mut cells = HashMap::new();
         let mut first = 0;
@@ -160,14 +182,14 @@ impl Photons {
             cells.insert(at(&run[0]), first..first + run.len());
             first += run.len();
         }
-        Self { landed, cells, radius, crowd }
+        Self { landed, cells, radius, shrunk, crowd }
     }
 
     /// Nothing landed.
     pub fn none() -> Self {
         let wavelengths = SampledWavelengths { phase: 0 };
         let nothing = Landed { photons: Vec::new(), wavelengths, paths: 0, segments: 0 };
-        Self::new(nothing, 1.0, Arc::default())
+        Self::new(nothing, 1.0, 1.0, Arc::default())
     }
 
     /// The lanes on which it can be met.
@@ -186,18 +208,19 @@ impl Photons {
         // Of a flat surface, a cell holds about its square.
         let density = |own: &Range<usize>| own.len() as f64 * per_path / self.radius.powi(2);
         let all = self.cells.iter().map(|(cell, own)| (*cell, density(own))).collect();
-        Crowd { width: self.radius, densities: all }
+        Crowd { width: self.radius, densities: all, most: self.landed.largest_discs() }
     }
 
-    /// Hand on what landed round `position` on a surface of this `normal`: where it came from, its flux
-    /// per m² there, and its light group.
+    /// Hand on what landed round `position` on a surface of this `normal` and `body`: where it came
+    /// from, its flux per m² there, and its light group.
     pub fn round(
         &self,
-        position: DVec3,
-        normal: DVec3,
+        (position, normal): (DVec3, DVec3),
+        body: BodyId,
         mut found: impl FnMut(&Landing, SampledSpectrum, usize),
     ) {
-        let radius = self.radius.min(self.crowd.radius(position, self.landed.paths));
+        let radius =
+            self.radius.min(self.crowd.radius(position, body, (self.shrunk, self.landed.paths)));
         let (middle, r2) = (cell(position, self.radius), radius * radius);
         for index in 0..27 {
             let step = IVec3::new(index % 3 - 1, index / 3 % 3 - 1, index / 9 - 1);
@@ -225,16 +248,17 @@ pub struct Crowd {
     width: f64,
     /// How much lands per mm² and walk, by cells.
     densities: HashMap<IVec3, f64>,
+    /// The largest radius of a first disc on each body, as far as any light landed there.
+    most: HashMap<BodyId, f64>,
 }
 
 impl Crowd {
-    /// The radius of a disc on which as many of so many walks land as it takes.
-    fn radius(&self, position: DVec3, paths: u32) -> f64 {
-        if self.densities.is_empty() {
-            return f64::INFINITY;
-        }
+    /// The radius of a disc that is small for its body, and on which no more of so many walks land than
+    /// it takes.
+    fn radius(&self, position: DVec3, body: BodyId, (shrunk, paths): (f64, u32)) -> f64 {
+        let most = self.most.get(&body).map_or(f64::INFINITY, |most| most * shrunk);
         let density = self.densities.get(&cell(position, self.width));
-        density.map_or(f64::INFINITY, |density| (CROWD / (PI * density * f64::from(paths))).sqrt())
+        density.map_or(most, |density| (CROWD / (PI * density * f64::from(paths))).sqrt().min(most))
     }
 }
 

@@ -32,7 +32,7 @@ const GUIDED: f64 = 0.5;
 const AIMED_SPLITS: u32 = 1;
 
 /// How often directions are drawn towards learned light, and towards a bright background.
-pub(super) struct Aims<'a> {
+struct Aims<'a> {
     background: f64,
     guided: f64,
     light: Option<Answered<'a>>,
@@ -110,7 +110,7 @@ impl<'a> PathWalk<'a> {
             if !self.land(branch, vertex, ground) {
                 return false;
             }
-            self.meet(branch, vertex, &lanes, ground);
+            self.meet(branch, vertex, ground);
         }
         let may_be_guided = match &ground {
             None => true,
@@ -131,7 +131,7 @@ impl<'a> PathWalk<'a> {
             self.show(branch, vertex);
         }
         let aims = self.aims(branch, vertex, &lanes);
-        self.see_emitters(branch, vertex, &lanes, Some(&aims));
+        self.see_emitters(branch, vertex, &lanes, &aims);
         let [technique, u, v, w] = branch.sampler.next_4d();
         let drawn = if technique < aims.background {
             self.scene.background.aim(vertex.position, [u, v, w])
@@ -260,14 +260,13 @@ impl<'a> PathWalk<'a> {
         pdf
     }
 
-    /// Add what one point of the emitters sends straight to a vertex; all of it where nothing `aims` at
-    /// it besides.
-    pub(super) fn see_emitters(
+    /// Add what one point of the emitters sends straight to a vertex.
+    fn see_emitters(
         &mut self,
         branch: &mut Branch,
         vertex: &Vertex<'_>,
         lanes: &SampledSpectrum,
-        aims: Option<&Aims<'_>>,
+        aims: &Aims<'_>,
     ) {
         let emitters = &self.scene.emitters;
         let is_looked_for = self.purpose.looks_for_light() && !emitters.is_empty();
@@ -289,10 +288,8 @@ impl<'a> PathWalk<'a> {
             return;
         };
         let emitted = if emitter.per_n2 { emitted / (index * index) } else { emitted };
-        let other = aims.map_or(0.0, |aims| {
-            let own = vertex.pdf(seen.direction, lanes);
-            self.mixed(vertex, seen.direction, own, aims)
-        });
+        let own = vertex.pdf(seen.direction, lanes);
+        let other = self.mixed(vertex, seen.direction, own, aims);
         let arriving = branch.throughput * answer * transmitted * emitted;
         self.add_light(emitter.group, arriving * (1.0 / (seen.pdf + other)));
     }

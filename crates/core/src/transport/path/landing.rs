@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 OR MIT
 //! Matt surfaces, where walks from the eye and from lights meet.
 
-use crate::spectrum::SampledSpectrum;
 use crate::transport::photons::Landing;
 
 use super::branch::{Branch, Seeks};
@@ -20,39 +19,29 @@ impl PathWalk<'_> {
         let Purpose::Light(receive, screen) = &mut self.purpose else {
             return true;
         };
-        let lands = if vertex.is_boundary {
-            branch.depth > 0 && !branch.has_met
-        } else {
-            branch.has_turned
-        };
+        let lands = if vertex.is_boundary { !branch.has_met } else { branch.has_turned };
         if lands {
             let (position, direction) = (vertex.position, -branch.ray.direction);
-            let landing = Landing { position, direction, normal: ground.true_normal };
+            let landing =
+                Landing { position, direction, normal: ground.true_normal, body: ground.body };
             receive(Carried::Landed(landing), branch.throughput);
         }
         branch.has_met |= ground.is_matt;
         !(branch.has_met && screen.is_some())
     }
 
-    /// Take what landed round a vertex. What did not land there comes straight from emitters to a very
-    /// rough boundary, and is looked for at once; or it comes by refraction alone to another surface,
-    /// and is left for the branch to find.
+    /// Take what landed round a vertex. What did not land there is left for the branch to find: what comes by
+    /// refraction alone to opaque matter, and what has been on a matt surface before it comes to a very
+    /// rough boundary.
     ///
     /// The radiance that a surface sends out is Σ f·E over the irradiances E that arrive from each
     /// direction; what is carried is L/n².
-    pub(super) fn meet(
-        &mut self,
-        branch: &mut Branch,
-        vertex: &Vertex<'_>,
-        lanes: &SampledSpectrum,
-        ground: &Ground,
-    ) {
+    pub(super) fn meet(&mut self, branch: &mut Branch, vertex: &Vertex<'_>, ground: &Ground) {
         let is_done = branch.has_met || branch.is_left() && !ground.is_matt;
         let Some(photons) = self.purpose.photons().filter(|_| !is_done) else {
             return;
         };
         if vertex.is_boundary {
-            self.see_emitters(branch, vertex, lanes, None);
             branch.seeks = Seeks::Nothing;
         } else {
             (branch.seeks, branch.has_met) = (Seeks::Refracted, true);
@@ -67,7 +56,8 @@ impl PathWalk<'_> {
             return;
         };
         eye.gathered.met += sent_on;
-        photons.round(vertex.position, ground.true_normal, |landing, irradiance, group| {
+        let place = (vertex.position, ground.true_normal);
+        photons.round(place, ground.body, |landing, irradiance, group| {
             let cos = landing.direction.dot(ground.normal).abs();
             if cos > 0.0 {
                 let is_near = landing.direction.dot(ground.true_normal) > 0.0;

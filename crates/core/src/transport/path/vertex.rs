@@ -4,7 +4,7 @@
 use crate::geometry::SurfacePoint;
 use crate::math::{orthonormal_pair, DMat3, DVec3};
 use crate::matter::{henyey_greenstein, sample_henyey_greenstein, Bsdf};
-use crate::scene::Interior;
+use crate::scene::{BodyId, Interior};
 use crate::spectrum::SampledSpectrum;
 
 use super::Meeting;
@@ -23,6 +23,8 @@ pub(super) struct Vertex<'a> {
 /// A surface on which light lands and is met.
 #[derive(Clone, Copy)]
 pub(super) struct Ground {
+    /// The body whose surface it is.
+    pub body: BodyId,
     /// Whether it is of opaque matter, and matt or very rough.
     pub is_matt: bool,
     /// The normals on the side that the branch comes from.
@@ -34,6 +36,7 @@ pub(super) struct Ground {
 #[expect(clippy::large_enum_variant, reason = "made at every hit: a box would cost an allocation")]
 enum Place<'a> {
     Surface {
+        body: BodyId,
         point: SurfacePoint,
         /// The surface's normal on the branch's side.
         true_normal: DVec3,
@@ -67,7 +70,8 @@ impl<'a> Vertex<'a> {
         let frame = frame(meeting.normal);
         let wi = frame.transpose() * meeting.wi;
         let true_normal = point.normal * meeting.side();
-        let place = Place::Surface { point, true_normal, frame, wi, bsdf, far };
+        let body = meeting.hit.body;
+        let place = Place::Surface { body, point, true_normal, frame, wi, bsdf, far };
         Self { position: point.position, near, is_boundary: true, place }
     }
 
@@ -140,12 +144,17 @@ impl<'a> Vertex<'a> {
 
     /// How walks from the eye and from lights meet there.
     pub fn ground(&self) -> Option<Ground> {
-        let Place::Surface { true_normal, frame, bsdf, .. } = &self.place else {
+        let Place::Surface { body, true_normal, frame, bsdf, .. } = &self.place else {
             return None;
         };
         let is_matt = bsdf.is_broad() && !self.is_boundary;
         let is_met = if self.is_boundary { bsdf.is_broad() } else { bsdf.spreads() };
-        is_met.then_some(Ground { is_matt, true_normal: *true_normal, normal: frame.z_axis })
+        is_met.then_some(Ground {
+            body: *body,
+            is_matt,
+            true_normal: *true_normal,
+            normal: frame.z_axis,
+        })
     }
 
     /// Where a ray along `wo` starts, and in which bodies.
