@@ -100,7 +100,7 @@ pub struct Film {
     pub pixels: Vec<PixelSums>,
     /// How many segments were followed for each pixel.
     pub segments: Vec<u64>,
-    /// The sum of the luminance that was found where light had landed on matt surfaces, for each pixel.
+    /// The sum of the luminance that was found where light had landed, for each pixel.
     pub landed: Vec<f64>,
     /// Bands per lane; 0 for a film without spectra.
     pub bands_per_lane: usize,

@@ -123,7 +123,7 @@ pub fn render(
     })
 }
 
-/// The light that lands on matt surfaces, for methods that ask for it; nothing where nothing shines.
+/// The light that lands on surfaces, for methods that ask for it; nothing where nothing shines.
 fn landings<'a>(
     scene: &'a Scene,
     source: &'a LightSource,

@@ -29,7 +29,7 @@ pub(super) struct Pass<'a> {
     pub leaves_rough: bool,
     /// Where light comes from, for walks that know.
     pub guide: Option<&'a Guide>,
-    /// What landed on matt surfaces for these samples.
+    /// What landed on surfaces for these samples.
     pub photons: Option<&'a Photons>,
     pub progress: &'a Progress,
 }

@@ -23,7 +23,7 @@ pub(super) struct Rendering<'a> {
     pub guide: Option<&'a Guide>,
     /// Whether walks from lights show what they send through rough boundaries.
     pub leaves_rough: bool,
-    /// What lands on matt surfaces, for the scattered part.
+    /// What lands on surfaces, for the scattered part.
     pub landings: Option<Landings<'a>>,
     pub progress: &'a Progress,
     pub began: Instant,
@@ -270,7 +270,7 @@ pub enum Found {
     Specular,
     /// By walks from the eye that were turned at random.
     Scattered,
-    /// By walks from lights, which landed on matt surfaces that walks from the eye met.
+    /// By walks from lights, which landed where walks from the eye met them.
     Landed,
     /// By walks from lights, which show it to the camera.
     ShownByLights,

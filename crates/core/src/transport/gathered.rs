@@ -11,9 +11,9 @@ pub struct Gathered {
     pub radiance: SampledSpectrum,
     /// X, Y and Z of each light group, in cd/m²; empty where nobody asked for layers.
     pub layers: Vec<[f64; 3]>,
-    /// The part of the radiance that was found where it had landed on matt surfaces.
+    /// The part of the radiance that was found where it had landed.
     pub landed: SampledSpectrum,
-    /// The share of the walk that met matt surfaces, by what they send on.
+    /// The share of the walk that met what landed, by what is sent on there.
     pub met: f64,
 }
 

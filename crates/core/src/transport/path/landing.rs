@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 OR MIT
-//! Matt surfaces, where walks from the eye and from lights meet.
+//! Surfaces where walks from the eye meet what walks from lights have left there.
 
 use crate::transport::photons::Landing;
 
@@ -30,9 +30,9 @@ impl PathWalk<'_> {
         !(branch.has_met && screen.is_some())
     }
 
-    /// Take what landed round a vertex. What did not land there is left for the branch to find: what comes by
-    /// refraction alone to opaque matter, and what has been on a matt surface before it comes to a very
-    /// rough boundary.
+    /// Take what landed round a vertex. What did not land there is left for the branch to find: what
+    /// comes by refraction alone to opaque matter, and what has been on a matt surface before it comes to
+    /// a very rough boundary.
     ///
     /// The radiance that a surface sends out is Σ f·E over the irradiances E that arrive from each
     /// direction; what is carried is L/n².

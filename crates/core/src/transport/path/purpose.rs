@@ -12,9 +12,9 @@ use crate::transport::Gathered;
 pub enum Carried<'r> {
     /// It leaves the scene along a ray.
     Left(&'r Ray),
-    /// It arrives where the walk turns at random, but for matt surfaces.
+    /// It arrives where walks from the eye have to find it.
     Arrived(Arrival),
-    /// It lands on a matt surface, not straight from where it started.
+    /// It lands where walks from the eye can meet it.
     Landed(Landing),
     /// A camera sees it at this place of its image, in pixels: the radiance there over this density.
     Shown(DVec2),
@@ -47,7 +47,7 @@ pub struct Eye<'a> {
     /// Whether walks from lights show what emitters send through rough boundaries that are the first
     /// thing the eye sees: then it is left to them.
     pub leaves_rough: bool,
-    /// What landed on matt surfaces: there, emitters are left to it.
+    /// What landed on surfaces: there, some of the light of emitters is left to it.
     pub photons: Option<&'a Photons>,
 }
 
@@ -95,7 +95,7 @@ impl<'a> Purpose<'a> {
         matches!(self, Self::Eye(Eye { leaves_rough: true, .. }))
     }
 
-    /// What landed on matt surfaces.
+    /// What landed on surfaces.
     pub fn photons(&self) -> Option<&'a Photons> {
         match self {
             Self::Eye(eye) => eye.photons,
