@@ -224,7 +224,7 @@ impl Photons {
         let (middle, r2) = (cell(position, self.radius), radius * radius);
         for index in 0..27 {
             let step = IVec3::new(index % 3 - 1, index / 3 % 3 - 1, index / 9 - 1);
-            let Some(own) = self.cells.get(&(middle + step)) else {
+            let Some(own) = self.cells.get(&middle.wrapping_add(step)) else {
                 continue;
             };
             for Photon { at, flux, group } in &self.landed.photons[own.clone()] {

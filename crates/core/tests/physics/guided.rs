@@ -82,8 +82,8 @@ fn what_is_learned_does_not_depend_on_threads() {
     assert_eq!(pictures[0], pictures[2]);
 }
 
-/// Two lamps behind a frosted, dyed pane and before a matt wall, over a 24 × 16 picture.
-fn frosted(projection: Projection, alpha: f64) -> Scene {
+/// Two lamps behind frosted, dyed panes and before a matt wall, over a 24 × 16 picture.
+fn frosted(projection: Projection, panes: &[(f64, [f64; 2])]) -> Scene {
     let mut world = World::dark();
     for (x, group) in [(-5.0, 1), (6.0, 2)] {
         let lamp = world.add(matt(0.2), disc(DVec3::new(x, 0.0, 0.0), DVec3::Y, 0.8));
@@ -91,8 +91,11 @@ fn frosted(projection: Projection, alpha: f64) -> Scene {
     }
     world.add(matt(0.6), cuboid(DVec3::new(-16.0, -3.0, -12.0), DVec3::new(16.0, -1.0, 12.0)));
     let dye = by_lane(|lane| 0.1 - 0.005 * lane as f64);
-    let pane = cuboid(DVec3::new(-12.0, 6.0, -8.0), DVec3::new(12.0, 8.0, 8.0));
-    world.add_rough(body(by_lane(|lane| 1.5 - 0.004 * lane as f64), dye, None), alpha, pane);
+    for (alpha, [left, right]) in panes {
+        let pane = cuboid(DVec3::new(*left, 6.0, -8.0), DVec3::new(*right, 8.0, 8.0));
+        let plastic = body(by_lane(|lane| 1.5 - 0.004 * lane as f64), dye.clone(), None);
+        world.add_rough(plastic, *alpha, pane);
+    }
     let eye = DVec3::new(20.0, 70.0, 15.0);
     world.seen_by(Camera::new(eye, DVec3::new(0.0, 4.0, 0.0), DVec3::Z, projection).unwrap())
 }
@@ -113,13 +116,14 @@ fn blocks(film: &Film) -> Vec<f64> {
 #[test]
 fn light_from_the_lamps_and_light_found_from_the_eye_make_the_picture_that_the_eye_finds() {
     // Behind a very rough pane what has landed is met; a less rough one is shown to the camera.
-    for (projection, alpha) in [
-        (Projection::Pinhole { field_of_view_deg: 24.0 }, 0.3),
-        (Projection::ThinLens { field_of_view_deg: 24.0, aperture: 9.0, focus: 68.0 }, 0.2),
-        (Projection::Orthographic { height: 30.0 }, 0.3),
-        (Projection::Orthographic { height: 30.0 }, 0.2),
+    let whole = |alpha: f64| vec![(alpha, [-12.0, 12.0])];
+    for (projection, panes) in [
+        (Projection::Pinhole { field_of_view_deg: 24.0 }, whole(0.3)),
+        (Projection::ThinLens { field_of_view_deg: 24.0, aperture: 9.0, focus: 68.0 }, whole(0.2)),
+        (Projection::Orthographic { height: 30.0 }, whole(0.3)),
+        (Projection::Orthographic { height: 30.0 }, vec![(0.3, [-12.0, -0.5]), (0.2, [0.5, 12.0])]),
     ] {
-        let scene = frosted(projection, alpha);
+        let scene = frosted(projection, &panes);
         // Neighbouring pixels share what lands and is shown: σ comes from pictures of their own.
         let pictures = |method: Method, samples: u32| -> Vec<Estimate> {
             let picture = |seed: u64| {
@@ -147,16 +151,19 @@ fn light_from_the_lamps_and_light_found_from_the_eye_make_the_picture_that_the_e
         for (at, (a, b)) in lit[..48].iter().zip(&path).enumerate() {
             if b.mean >= 0.03 * most {
                 let z = (a.mean - b.mean) / a.sigma.hypot(b.sigma);
-                assert!(z.abs() < 5.0, "{projection:?} {alpha} {at}: {a:?} {b:?} {z}");
+                assert!(z.abs() < 5.0, "{projection:?} {panes:?} {at}: {a:?} {b:?} {z}");
                 squares += z * z;
                 number += 1.0;
             }
         }
-        assert!(squares / number < 2.5, "{projection:?} {alpha}: {}", squares / number);
+        assert!(squares / number < 2.5, "{projection:?} {panes:?}: {}", squares / number);
         let (a, b) = (lit[48], path[48]);
         let sigma = a.sigma.hypot(b.sigma);
         let z = (a.mean - b.mean) / sigma;
-        assert!(z.abs() < 4.0 && sigma < 0.05 * b.mean, "{projection:?} {alpha}: {a:?} {b:?} {z}");
+        assert!(
+            z.abs() < 4.0 && sigma < 0.05 * b.mean,
+            "{projection:?} {panes:?}: {a:?} {b:?} {z}"
+        );
     }
 }
 
@@ -221,7 +228,7 @@ fn a_surround_is_seen_once_by_both_parts_of_a_picture_together() {
 
 #[test]
 fn walks_that_bring_no_light_end_early_and_a_few_stand_for_all_in_the_ledger() {
-    let scene = frosted(Projection::Pinhole { field_of_view_deg: 20.0 }, 0.2);
+    let scene = frosted(Projection::Pinhole { field_of_view_deg: 20.0 }, &[(0.2, [-12.0, 12.0])]);
     let settings = RenderSettings {
         width: 24,
         height: 16,
@@ -238,7 +245,7 @@ fn walks_that_bring_no_light_end_early_and_a_few_stand_for_all_in_the_ledger() {
 #[test]
 fn the_fewest_samples_show_the_light_behind_a_rough_cover_too() {
     // So few that nothing is allotted: all of the light is the eye's then.
-    let scene = frosted(Projection::Pinhole { field_of_view_deg: 24.0 }, 0.2);
+    let scene = frosted(Projection::Pinhole { field_of_view_deg: 24.0 }, &[(0.2, [-12.0, 12.0])]);
     let mean = |samples: u32, adaptive: bool, seed: u64| {
         let settings = RenderSettings {
             width: 24,

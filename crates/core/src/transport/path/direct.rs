@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 use crate::math::{DVec2, DVec3, Ray};
 use crate::scene::BodyId;
 use crate::spectrum::SampledSpectrum;
-use crate::transport::guide::{Answered, Arrival};
+use crate::transport::guide::Answered;
 
 use super::branch::{Branch, CameBy, Seeks};
 use super::purpose::{Carried, Part, Purpose, Screen};
@@ -106,28 +106,22 @@ impl<'a> PathWalk<'a> {
         }
         let was_left = self.all_is_left(branch);
         let ground = vertex.ground();
+        if !self.land(branch, vertex, ground.as_ref()) {
+            return false;
+        }
         if let Some(ground) = &ground {
-            if !self.land(branch, vertex, ground) {
-                return false;
-            }
             self.meet(branch, vertex, ground);
         }
-        let may_be_guided = match &ground {
-            None => true,
-            Some(ground) if ground.is_matt => branch.depth > 0 && !branch.has_turned,
-            Some(_) => !vertex.is_boundary && !branch.has_turned,
-        };
-        if may_be_guided {
-            self.show_arrival(branch, vertex);
-        }
         branch.has_turned = true;
-        if branch.depth == 0 && vertex.is_boundary && self.purpose.leaves_rough() {
+        // Where light is met, it is not shown.
+        let is_shown = vertex.is_boundary && ground.is_none();
+        if branch.depth == 0 && is_shown && self.purpose.leaves_rough() {
             branch.seeks = Seeks::Nothing;
         }
         if !was_left && self.all_is_left(branch) && !self.survives_unseen(branch) {
             return false;
         }
-        if vertex.is_boundary {
+        if is_shown {
             self.show(branch, vertex);
         }
         let aims = self.aims(branch, vertex, &lanes);
@@ -163,16 +157,6 @@ impl<'a> PathWalk<'a> {
         branch.ray = Ray::endless(origin, wo);
         branch.interior = interior;
         pdf > 0.0
-    }
-
-    /// Show whoever follows a walk from a light that it arrives at a vertex.
-    fn show_arrival(&mut self, branch: &Branch, vertex: &Vertex<'_>) {
-        let weight = self.weight(branch.throughput);
-        if let Purpose::Light(receive, _) = &mut self.purpose {
-            let (position, direction, way) = (vertex.position, -branch.ray.direction, branch.way);
-            let arrival = Arrival { position, direction, way, weight };
-            receive(Carried::Arrived(arrival), branch.throughput);
-        }
     }
 
     /// Whether all that a branch meets of emitters is left to walks from lights.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 OR MIT
 //! Surfaces where walks from the eye meet what walks from lights have left there.
 
+use crate::transport::guide::Arrival;
 use crate::transport::photons::Landing;
 
 use super::branch::{Branch, Seeks};
@@ -9,24 +10,36 @@ use super::vertex::{Ground, Vertex};
 use super::PathWalk;
 
 impl PathWalk<'_> {
-    /// Let a walk from a light land; whether it goes on.
+    /// Let a walk from a light land on the `ground` of a vertex, or else show that it arrives where walks
+    /// from the eye have to find it; whether it goes on.
     pub(super) fn land(
         &mut self,
         branch: &mut Branch,
         vertex: &Vertex<'_>,
-        ground: &Ground,
+        ground: Option<&Ground>,
     ) -> bool {
+        let weight = self.weight(branch.throughput);
         let Purpose::Light(receive, screen) = &mut self.purpose else {
             return true;
         };
-        let lands = if vertex.is_boundary { !branch.has_met } else { branch.has_turned };
-        if lands {
-            let (position, direction) = (vertex.position, -branch.ray.direction);
-            let landing =
-                Landing { position, direction, normal: ground.true_normal, body: ground.body };
-            receive(Carried::Landed(landing), branch.throughput);
+        let (position, direction, way) = (vertex.position, -branch.ray.direction, branch.way);
+        let arrived = Carried::Arrived(Arrival { position, direction, way, weight });
+        let Some(Ground { body, is_matt, normal }) = ground.copied() else {
+            receive(arrived, branch.throughput);
+            return true;
+        };
+        let landed = Carried::Landed(Landing { position, direction, normal, body });
+        if vertex.is_boundary {
+            if !branch.has_met {
+                receive(landed, branch.throughput);
+            }
+        } else if branch.has_turned {
+            receive(landed, branch.throughput);
+        } else if branch.depth > 0 || !is_matt {
+            // Next-event estimation finds by itself what comes straight to a matt surface.
+            receive(arrived, branch.throughput);
         }
-        branch.has_met |= ground.is_matt;
+        branch.has_met |= is_matt;
         !(branch.has_met && screen.is_some())
     }
 
@@ -47,7 +60,8 @@ impl PathWalk<'_> {
             (branch.seeks, branch.has_met) = (Seeks::Refracted, true);
         }
         let sent_on = self.weight(branch.throughput * vertex.albedo());
-        let per_n2 = [ground.true_normal, -ground.true_normal].map(|side| {
+        let normal = ground.normal;
+        let per_n2 = [normal, -normal].map(|side| {
             let index = self.index(&vertex.leave_along(side).1);
             branch.throughput / (index * index)
         });
@@ -56,13 +70,12 @@ impl PathWalk<'_> {
             return;
         };
         eye.gathered.met += sent_on;
-        let place = (vertex.position, ground.true_normal);
-        photons.round(place, ground.body, |landing, irradiance, group| {
-            let cos = landing.direction.dot(ground.normal).abs();
-            if cos > 0.0 {
-                let is_near = landing.direction.dot(ground.true_normal) > 0.0;
-                let carried = per_n2[usize::from(!is_near)];
-                let answer = vertex.answer(landing.direction) * (1.0 / cos);
+        photons.round((vertex.position, normal), ground.body, |landing, irradiance, group| {
+            // What landed did so on the true surface, whatever its shading.
+            let cos = landing.direction.dot(normal);
+            if cos != 0.0 {
+                let carried = per_n2[usize::from(cos < 0.0)];
+                let answer = vertex.answer(landing.direction) * (1.0 / cos.abs());
                 let arriving = carried * answer * irradiance;
                 eye.gathered.landed += arriving;
                 eye.gathered.add(scene, wavelengths, group, arriving);

@@ -27,9 +27,7 @@ pub(super) struct Ground {
     pub body: BodyId,
     /// Whether it is of opaque matter, and matt or very rough.
     pub is_matt: bool,
-    /// The normals on the side that the branch comes from.
-    pub true_normal: DVec3,
-    /// The shading normal.
+    /// The true normal on the side that the branch comes from.
     pub normal: DVec3,
 }
 
@@ -144,17 +142,12 @@ impl<'a> Vertex<'a> {
 
     /// How walks from the eye and from lights meet there.
     pub fn ground(&self) -> Option<Ground> {
-        let Place::Surface { body, true_normal, frame, bsdf, .. } = &self.place else {
+        let Place::Surface { body, true_normal, bsdf, .. } = &self.place else {
             return None;
         };
         let is_matt = bsdf.is_broad() && !self.is_boundary;
         let is_met = if self.is_boundary { bsdf.is_broad() } else { bsdf.spreads() };
-        is_met.then_some(Ground {
-            body: *body,
-            is_matt,
-            true_normal: *true_normal,
-            normal: frame.z_axis,
-        })
+        is_met.then_some(Ground { body: *body, is_matt, normal: *true_normal })
     }
 
     /// Where a ray along `wo` starts, and in which bodies.
