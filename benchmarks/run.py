@@ -53,7 +53,7 @@ def main() -> None:
     parser.add_argument("--triangles", type=int, nargs="*", default=[100_000, 1_000_000, 5_000_000])
     own = parser.add_argument_group("lit")
     own.add_argument("--quick", action="store_true", help="small and short, into build/lit-quick/")
-    own.add_argument("--short", action="store_true", help="half the size, half the time")
+    own.add_argument("--short", action="store_true", help="half the size, shorter long runs")
     own.add_argument("--lamps", nargs="*", choices=tuple(LAMPS), default=lit.USUAL)
     own.add_argument("--methods", nargs="*", default=lit.METHODS, help="of Lamplit; path first")
     own.add_argument("--long", type=float, help="core seconds of the pictures' second line")
