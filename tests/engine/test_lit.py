@@ -73,9 +73,10 @@ def test_what_landed_takes_memory_that_is_foretold(scene_of: Callable[..., Any])
     small, large = (
         memory_estimate(bulb(scene_of, width=side, height=side)).film_bytes for side in (10, 1000)
     )
-    # Two films and 16 pictures, and twice 216 bytes: for 12 photons a pixel, for 2^18 at most.
-    per_pixel = 2 * 112 + 16 * 24
-    assert small == 100 * (per_pixel + 12 * 432)
+    # Two films and 16 pictures, and twice 216 bytes: for 12 photons a pixel of each of
+    # eight samples, for 2^18 at most.
+    per_pixel = 2 * 144 + 16 * 24
+    assert small == 100 * (per_pixel + 8 * 12 * 432)
     assert large == 1_000_000 * per_pixel + 2**18 * 432
 
 

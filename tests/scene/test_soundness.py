@@ -232,9 +232,9 @@ def test_the_memory_estimate_counts_pixels_bands_and_triangles(tmp_path: Path) -
     scene = scene_of(twice, tmp_path, image=image)
     estimate = memory_estimate(scene)
     assert estimate.triangles == 2 * 5120
-    assert estimate.film_bytes == 112_000_000
-    assert memory_estimate(scene, bands=10).film_bytes == 272_000_000
-    assert memory_estimate(scene, layers=2).film_bytes == 320_000_000
+    assert estimate.film_bytes == 144_000_000
+    assert memory_estimate(scene, bands=10).film_bytes == 304_000_000
+    assert memory_estimate(scene, layers=2).film_bytes == 416_000_000
     # The file is read once, and both copies are traced.
     assert estimate.meshes_bytes == 5120 * 12 + 2562 * 24
     assert estimate.tracer_bytes == 2 * 5120 * 100

@@ -17,17 +17,18 @@ _TRACER_BYTES_PER_TRIANGLE = 100
 #: A mesh as it is kept: float64 vertices, half as many as triangles, and 32-bit indices.
 _MESH_BYTES_PER_TRIANGLE = 3 * 4
 _MESH_BYTES_PER_VERTEX = 3 * 8
-#: Sums and squares of X, Y and Z, counts, and means and errors as they are handed back.
-_FILM_BYTES_PER_PIXEL = 56 + 8 + 2 * 24
+#: Sums of X, Y and Z and what their errors need, counts, and means and errors as they are handed back.
+_FILM_BYTES_PER_PIXEL = 88 + 8 + 2 * 24
 _BAND_BYTES_PER_PIXEL = 16
-_LAYER_BYTES_PER_PIXEL = 56 + 2 * 24
+_LAYER_BYTES_PER_PIXEL = 88 + 2 * 24
 #: A picture's spectra on twice its width and height, while glare is laid on it.
 _GLARE_BYTES_PER_PIXEL = 210
 #: Where light is shown through rough covers: 16 pictures of X, Y, Z, by light group with layers.
 _SHOWN_BYTES_PER_PIXEL = 16 * 24
-#: Light that landed, twice while it is sorted: so much of it at most, and about so much per pixel.
+#: Light that landed, twice while it is sorted: so much of it at most, and about so much per pixel,
+#: of as many samples as share it.
 _LANDED_BYTES = 2 * 216
-_MOST_LANDED, _LANDED_PER_PIXEL = 2**18, 12
+_MOST_LANDED, _LANDED_PER_PIXEL = 2**18, 8 * 12
 #: Spectral bands of a pixel, at most.
 MOST_BANDS = 80
 #: The interpreter with its libraries, and spectral tables.

@@ -8,25 +8,41 @@ use crate::spectrum::{SampledSpectrum, SampledWavelengths, LANES};
 
 pub use receivers::{DirectionCells, GroupSums, PlaneMap, Receivers, Spot, Spots, Xyz};
 
-/// The sums of one pixel.
+/// The sums of one pixel, over samples that come in batches: those of one batch may depend on each
+/// other, batches do not.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PixelSums {
     /// Σ X, Σ Y, Σ Z in cd/m².
     pub xyz: [f64; 3],
-    /// Σ X², Σ Y², Σ Z².
-    pub squares: [f64; 3],
     /// How many samples.
     pub samples: u32,
+    batches: u32,
+    /// Σ s² over the sums s of batches, Σ n·s with their numbers of samples n, and Σ n².
+    squares: [f64; 3],
+    products: [f64; 3],
+    squared_sizes: f64,
 }
 
 impl PixelSums {
-    /// Add a sample's X, Y and Z.
+    /// Add a sample's X, Y and Z, a batch of its own.
     pub fn add(&mut self, xyz: [f64; 3]) {
-        for (i, value) in xyz.into_iter().enumerate() {
-            self.xyz[i] += value;
-            self.squares[i] += value * value;
+        self.add_batch(xyz, 1);
+    }
+
+    /// Add the sums of X, Y and Z of a batch of samples.
+    pub fn add_batch(&mut self, sums: [f64; 3], samples: u32) {
+        if samples == 0 {
+            return;
         }
-        self.samples += 1;
+        let size = f64::from(samples);
+        for (i, sum) in sums.into_iter().enumerate() {
+            self.xyz[i] += sum;
+            self.squares[i] += sum * sum;
+            self.products[i] += size * sum;
+        }
+        self.squared_sizes += size * size;
+        self.samples += samples;
+        self.batches += 1;
     }
 
     /// The mean X, Y and Z; nothing where there is no sample.
@@ -35,15 +51,20 @@ impl PixelSums {
         self.xyz.map(|sum| sum / n)
     }
 
-    /// The standard errors of the mean, √((Σx² − (Σx)²/n)/(n(n − 1))); infinite below two samples.
+    /// The standard errors of the mean m, √(b/(b − 1)·Σ (s − n·m)²)/Σ n over b batches; infinite below
+    /// two. For batches of one it is √(Σ (x − m)²/(b(b − 1))).
+    ///
+    /// Source: K.-Y. Liang and S. Zeger, "Longitudinal Data Analysis Using Generalized Linear Models",
+    /// Biometrika 73(1), 1986 (the variance of a mean of clusters).
     pub fn standard_error(&self) -> [f64; 3] {
-        let n = f64::from(self.samples);
-        if self.samples < 2 {
+        if self.batches < 2 {
             return [f64::INFINITY; 3];
         }
+        let (mean, batches) = (self.mean(), f64::from(self.batches));
         [0, 1, 2].map(|i| {
-            let spread = self.squares[i] - self.xyz[i] * self.xyz[i] / n;
-            (spread.max(0.0) / (n * (n - 1.0))).sqrt()
+            let m = mean[i];
+            let spread = self.squares[i] - 2.0 * m * self.products[i] + m * m * self.squared_sizes;
+            (spread.max(0.0) * batches / (batches - 1.0)).sqrt() / f64::from(self.samples)
         })
     }
 
@@ -59,7 +80,41 @@ impl PixelSums {
             let variance = errors[0][i] * errors[0][i] + errors[1][i] * errors[1][i];
             variance * n * (n - 1.0) + xyz[i] * xyz[i] / n
         });
-        Self { xyz, squares, samples }
+        Self { xyz, samples, batches: samples, squares, products: xyz, squared_sizes: n }
+    }
+}
+
+/// The sums of a batch of one pixel's samples: of all light, and of each light group.
+#[derive(Debug)]
+pub struct Batch {
+    xyz: [f64; 3],
+    layers: Vec<[f64; 3]>,
+    samples: u32,
+}
+
+impl Batch {
+    /// Nothing yet, of so many light groups.
+    pub fn new(layers: usize) -> Self {
+        Self { xyz: [0.0; 3], layers: vec![[0.0; 3]; layers], samples: 0 }
+    }
+
+    /// Add a sample's X, Y and Z, and those of each light group.
+    pub fn add(&mut self, xyz: [f64; 3], layers: &[[f64; 3]]) {
+        let sums = std::iter::once(&mut self.xyz).chain(&mut self.layers);
+        for (sum, value) in sums.zip(std::iter::once(&xyz).chain(layers)) {
+            *sum = [0, 1, 2].map(|i| sum[i] + value[i]);
+        }
+        self.samples += 1;
+    }
+
+    /// Add the batch to a pixel, and begin another.
+    pub fn close(&mut self, pixel: &mut PixelSums, layers: &mut [PixelSums]) {
+        pixel.add_batch(self.xyz, self.samples);
+        for (sums, own) in layers.iter_mut().zip(&self.layers) {
+            sums.add_batch(*own, self.samples);
+        }
+        (self.xyz, self.samples) = ([0.0; 3], 0);
+        self.layers.fill([0.0; 3]);
     }
 }
 
@@ -202,6 +257,29 @@ mod tests {
         let mut one = PixelSums::default();
         one.add([1.0; 3]);
         assert_eq!(one.standard_error(), [f64::INFINITY; 3]);
+    }
+
+    #[test]
+    fn samples_that_are_alike_count_once() {
+        let values = [1.0, 2.0, 3.0, 6.0];
+        let [mut alone, mut alike] = [PixelSums::default(); 2];
+        for value in values {
+            alone.add([value; 3]);
+            alike.add_batch([5.0 * value; 3], 5);
+        }
+        assert_eq!((alike.mean(), alike.samples), (alone.mean(), 20));
+        let [alone, alike] = [alone, alike].map(|sums| sums.standard_error()[1]);
+        assert!((alike / alone - 1.0).abs() < 1e-12, "{alike} {alone}");
+    }
+
+    #[test]
+    fn batches_of_unlike_sizes_weigh_by_their_samples() {
+        let mut sums = PixelSums::default();
+        sums.add([1.0; 3]);
+        sums.add_batch([9.0; 3], 3);
+        // The mean is 10/4; the sums are 1.5 less and more than it makes one expect.
+        let expected = (2.0_f64 * (1.5 * 1.5 + 1.5 * 1.5)).sqrt() / 4.0;
+        assert!((sums.standard_error()[0] - expected).abs() < 1e-15);
     }
 
     #[test]

@@ -192,8 +192,8 @@ impl Allocation {
     }
 
     /// How many pixels take the sample `number`, counted from 0.
-    pub fn taking(&self, number: u32) -> usize {
-        self.counts.iter().filter(|count| **count > number).count()
+    pub fn taking(&self, number: u32) -> u64 {
+        self.counts.iter().filter(|count| **count > number).count() as u64
     }
 
     /// The most that a pixel takes.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 OR MIT
-//! [`Landings`]: for each sample of the pixels, the light that lands on surfaces.
+//! [`Landings`]: for batches of samples of the pixels, the light that lands on surfaces.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use crate::math::DVec2;
@@ -19,8 +20,13 @@ const TO_CHOOSE: u64 = 0xBB67_AE85_84CA_A73B;
 const TRIALS: usize = 1 << 11;
 /// Walks from lights for each such walk from the eye.
 const PER_MEETING: f64 = 6.0;
-/// About how much may land for one sample of the pixels: a bound to the memory.
+/// About how much may land at once: a bound to the memory.
 const MOST_LANDED: f64 = 262_144.0;
+/// The first samples each have walks of their own; later ones share what landed, so many as that bound
+/// lets, but no more than these. Where few of the photons in a disc come from where the surface mirrors, more
+/// of them are worth more than other places of the pixel.
+const ALONE: u32 = 16;
+const MOST_TOGETHER: f64 = 8.0;
 /// The walks of the trial.
 const OF_TRIAL: u32 = 1 << 15;
 /// The fewest walks from lights, and the fewest for each walk from the eye, whatever trials tell: they
@@ -35,7 +41,7 @@ const PHOTONS: usize = 4;
 /// Radii fall with the sample's number to this power: with −1/6, noise and blur vanish at one rate.
 const SHRINKING: f64 = -1.0 / 6.0;
 
-/// For each sample of the pixels, the light that lands on surfaces.
+/// For batches of samples of the pixels, the light that lands on surfaces.
 pub(super) struct Landings<'a> {
     scene: &'a Scene,
     walk: LightWalk<'a>,
@@ -43,6 +49,8 @@ pub(super) struct Landings<'a> {
     /// Walks from lights for each walk from the eye.
     share: f64,
     most_paths: f64,
+    /// How many samples share what landed.
+    together: u32,
     first_radius: f64,
     crowd: Arc<Crowd>,
 }
@@ -62,29 +70,52 @@ impl<'a> Landings<'a> {
         let walk = LightWalk::new(scene, source, path.from_lights())?;
         let share = (PER_MEETING * meetings(scene, path, settings, interior)).max(LEAST_SHARE);
         let crowd = Arc::default();
-        let mut own =
-            Self { scene, walk, settings, share, most_paths: 0.0, first_radius: 0.0, crowd };
+        let mut own = Self {
+            scene,
+            walk,
+            settings,
+            share,
+            most_paths: 0.0,
+            together: 1,
+            first_radius: 0.0,
+            crowd,
+        };
         let trial = own.land(u32::MAX, OF_TRIAL);
         let distance = trial.mean_distance(scene.camera.position());
         let pixels = PIXELS * scene.camera.pixel_mm(distance, settings.height);
         own.most_paths = (MOST_LANDED / trial.per_path().max(1.0)).max(FEWEST);
-        let fewer = f64::from(own.paths(settings.pixels() as usize)) / f64::from(OF_TRIAL);
+        let each = f64::from(own.paths(1, settings.pixels()));
+        own.together = (own.most_paths / each).clamp(1.0, MOST_TOGETHER) as u32;
+        let fewer = each / f64::from(OF_TRIAL);
         let apart = trial.spacing(PHOTONS) / (PHOTONS as f64 * fewer).sqrt();
         own.first_radius = pixels.max(apart);
         own.crowd = Arc::new(Photons::new(trial, own.first_radius, 1.0, Arc::default()).crowd());
         Ok(own)
     }
 
-    /// The light that lands for sample `number` of so many pixels.
-    pub fn of_sample(&self, number: u32, pixels: usize) -> Photons {
-        let shrunk = (f64::from(number) + 1.0).powf(SHRINKING);
-        let landed = self.land(number, self.paths(pixels));
+    /// The samples that share what landed with the sample `own`, counted from the first, and the number of
+    /// their batch.
+    pub fn batch(&self, own: u32) -> (u32, Range<u32>) {
+        let Some(later) = own.checked_sub(ALONE) else {
+            return (own, own..own + 1);
+        };
+        let start = own - later % self.together;
+        (ALONE + later / self.together, start..start.saturating_add(self.together))
+    }
+
+    /// The light that lands for the batch `number` of samples, all of which count from the first; of all
+    /// pixels together, it takes so many of them.
+    pub fn of_batch(&self, number: u32, batch: &Range<u32>, taken: u64) -> Photons {
+        let start = self.settings.samples.start;
+        let shrunk = (f64::from(start) + f64::from(batch.end)).powf(SHRINKING);
+        let landed = self.land(start.saturating_add(number), self.paths(batch.len(), taken));
         Photons::new(landed, self.first_radius, shrunk, Arc::clone(&self.crowd))
     }
 
-    /// How many walks from lights a sample of so many pixels has.
-    fn paths(&self, pixels: usize) -> u32 {
-        (self.share * pixels as f64).clamp(FEWEST, self.most_paths) as u32
+    /// How many walks from lights a batch of so many samples has, of which pixels take so many.
+    fn paths(&self, samples: usize, taken: u64) -> u32 {
+        let fewest = (FEWEST * samples as f64).min(self.most_paths);
+        (self.share * taken as f64).clamp(fewest, self.most_paths) as u32
     }
 
     fn land(&self, number: u32, paths: u32) -> Landed {

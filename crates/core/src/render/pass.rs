@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::allocation::Allocation;
 use super::settings::{Method, RenderSettings};
 use super::Progress;
-use crate::film::{BandSums, Film, PixelSums};
+use crate::film::{BandSums, Batch, Film, PixelSums};
 use crate::math::DVec2;
 use crate::scene::{Interior, Scene};
 use crate::transport::{Eye, Gathered, Guide, HallWalk, Part, PathWalk, Photons, Tally};
@@ -29,7 +29,7 @@ pub(super) struct Pass<'a> {
     pub leaves_rough: bool,
     /// Where light comes from, for walks that know.
     pub guide: Option<&'a Guide>,
-    /// What landed on surfaces for these samples.
+    /// What landed on surfaces for these samples, which are one batch then.
     pub photons: Option<&'a Photons>,
     pub progress: &'a Progress,
 }
@@ -64,6 +64,7 @@ impl Pass<'_> {
             .map(|(at, (((((pixels, segments), landed), sums), visits), layer_sums))| {
                 let mut tally = Tally::new(self.scene.bodies.len());
                 let mut gathered = Gathered::new(layers);
+                let mut batch = Batch::new(layers);
                 let pixels = pixels.iter_mut().zip(segments).zip(landed);
                 for (i, ((pixel, segments), landed)) in pixels.enumerate() {
                     if self.progress.is_cancelled() {
@@ -75,7 +76,8 @@ impl Pass<'_> {
                     };
                     let layers = &mut layer_sums[i * layers..(i + 1) * layers];
                     let exposure = Exposure { pixel, segments, landed, bands, layers };
-                    self.expose(at * tile + i, exposure, &mut gathered, &mut tally);
+                    let scratch = (&mut gathered, &mut batch);
+                    self.expose(at * tile + i, exposure, scratch, &mut tally);
                 }
                 tally
             })
@@ -100,7 +102,7 @@ impl Pass<'_> {
         &self,
         number: usize,
         exposure: Exposure<'_>,
-        gathered: &mut Gathered,
+        (gathered, batch): (&mut Gathered, &mut Batch),
         tally: &mut Tally,
     ) {
         let Exposure { pixel, segments, landed, mut bands, layers } = exposure;
@@ -115,15 +117,16 @@ impl Pass<'_> {
                 tally.drop_sample(number as u64, sample);
                 continue;
             }
-            pixel.add(self.scene.tristimulus(gathered.radiance, wavelengths));
-            *landed += self.scene.tristimulus(gathered.landed, wavelengths)[1];
-            for (sums, xyz) in layers.iter_mut().zip(&gathered.layers) {
-                sums.add(*xyz);
+            batch.add(self.scene.tristimulus(gathered.radiance, wavelengths), &gathered.layers);
+            if self.photons.is_none() {
+                batch.close(pixel, layers);
             }
+            *landed += self.scene.tristimulus(gathered.landed, wavelengths)[1];
             if !bands.visits.is_empty() {
                 bands.add(gathered.radiance, wavelengths, phases);
             }
         }
+        batch.close(pixel, layers);
         *segments += tally.segments() - before;
         self.progress.done.fetch_add(done, Ordering::Relaxed);
     }
@@ -156,6 +159,7 @@ impl Pass<'_> {
             }
             Method::Path(path) | Method::Lit(path) => {
                 let Self { part, guide, leaves_rough, photons, .. } = *self;
+                let path = if part == Part::Specular { path.of_sharp_light() } else { path };
                 let eye = Eye { gathered, part, guide, leaves_rough, photons };
                 PathWalk::gather(scene, path, wavelengths, sampler, tally, eye, start);
             }

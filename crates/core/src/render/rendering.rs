@@ -166,7 +166,7 @@ impl Rendering<'_> {
         let is_counted = !self.settings.allots() && time_budget.is_none();
         let each = is_counted.then_some(samples.len() as u32);
         while next < end && !self.progress.is_cancelled() {
-            let until = end.min(next + length);
+            let until = end.min(self.whole(next + length));
             let pass_started = Instant::now();
             for exposure in &mut *exposures {
                 tally.add(&self.expose_part(exposure, next..until));
@@ -193,6 +193,14 @@ impl Rendering<'_> {
 }
 
 impl Rendering<'_> {
+    /// The end of the batch that the sample before `end` belongs to.
+    fn whole(&self, end: u32) -> u32 {
+        let first = self.settings.samples.start;
+        self.landings
+            .as_ref()
+            .map_or(end, |landings| first.saturating_add(landings.batch(end - 1 - first).1.end))
+    }
+
     /// Take samples of one part of the light.
     fn expose_part(&self, exposure: &mut Exposure, samples: Range<u32>) -> Tally {
         let Self { scene, settings, interior, guide, leaves_rough, progress, .. } = *self;
@@ -216,15 +224,17 @@ impl Rendering<'_> {
         let mut tally = Tally::new(scene.bodies.len());
         match &self.landings {
             Some(landings) if part == Part::Scattered => {
-                for sample in samples {
-                    if progress.is_cancelled() {
-                        break;
-                    }
-                    let own = sample - settings.samples.start;
-                    let pixels = limit.map_or(self.pixels() as usize, |limit| limit.taking(own));
-                    let photons = landings.of_sample(sample, pixels);
-                    tally.add(&run(sample..sample + 1, Some(&photons)));
+                let first = settings.samples.start;
+                let mut next = samples.start;
+                while next < samples.end && !progress.is_cancelled() {
+                    let (number, batch) = landings.batch(next - first);
+                    let until = samples.end.min(first.saturating_add(batch.end));
+                    let taken = |own| limit.map_or(self.pixels(), |limit| limit.taking(own));
+                    let all = (next - first..until - first).map(taken).sum();
+                    let photons = landings.of_batch(number, &batch, all);
+                    tally.add(&run(next..until, Some(&photons)));
                     tally.eye_rays += photons.segments();
+                    next = until;
                 }
             }
             _ => tally.add(&run(samples, None)),

@@ -74,7 +74,7 @@ fn what_was_learned_of_another_scene_changes_no_expectation() {
 fn what_is_learned_does_not_depend_on_threads() {
     let scene = bulb(1.0, 1.5, 0.5);
     let pictures = [1, 2, 5].map(|threads| {
-        let settings = RenderSettings { threads, ..Take::lit(16, USUAL).settings() };
+        let settings = RenderSettings { threads, ..Take::lit(40, USUAL).settings() };
         render(&scene, &settings, &Progress::default()).unwrap().film.pixels
     });
     assert!(pictures[0].iter().any(|pixel| pixel.xyz[1] > 0.0));
@@ -82,7 +82,7 @@ fn what_is_learned_does_not_depend_on_threads() {
     assert_eq!(pictures[0], pictures[2]);
 }
 
-/// Two lamps behind frosted, dyed panes and before a matt wall, over a 24 × 16 picture.
+/// Two lamps behind frosted, dyed panes and before a matt wall, over a picture of 3 : 2.
 fn frosted(projection: Projection, panes: &[(f64, [f64; 2])]) -> Scene {
     let mut world = World::dark();
     for (x, group) in [(-5.0, 1), (6.0, 2)] {
@@ -100,12 +100,12 @@ fn frosted(projection: Projection, panes: &[(f64, [f64; 2])]) -> Scene {
     world.seen_by(Camera::new(eye, DVec3::new(0.0, 4.0, 0.0), DVec3::Z, projection).unwrap())
 }
 
-/// The luminance of the blocks of 4 × 4 pixels of a frosted picture, by light group, and of all of it.
+/// The luminance of the blocks of 8 × 8 pixels of a frosted picture, by light group, and of all of it.
 fn blocks(film: &Film) -> Vec<f64> {
     let layer = |pixel: usize, group: usize| film.layer_sums[pixel * film.layers + group].mean()[1];
     let block = |at: usize, group: usize| {
-        let (column, row) = (at % 6 * 4, at / 6 * 4);
-        let pixels = (0..16).map(|i| (row + i / 4) * 24 + column + i % 4);
+        let (column, row) = (at % 6 * 8, at / 6 * 8);
+        let pixels = (0..64).map(|i| (row + i / 8) * 48 + column + i % 8);
         pixels.map(|pixel| layer(pixel, group)).sum::<f64>()
     };
     let mut all: Vec<f64> = (0..48).map(|i| block(i % 24, 1 + i / 24)).collect();
@@ -128,8 +128,8 @@ fn light_from_the_lamps_and_light_found_from_the_eye_make_the_picture_that_the_e
         let pictures = |method: Method, samples: u32| -> Vec<Estimate> {
             let picture = |seed: u64| {
                 let settings = RenderSettings {
-                    width: 24,
-                    height: 16,
+                    width: 48,
+                    height: 32,
                     samples: 0..samples,
                     method,
                     seed,
@@ -143,8 +143,8 @@ fn light_from_the_lamps_and_light_found_from_the_eye_make_the_picture_that_the_e
             let all: Vec<Vec<f64>> = (0..8).map(picture).collect();
             (0..49).map(|at| Estimate::of(all.iter().map(|blocks| &blocks[at]))).collect()
         };
-        let lit = pictures(Method::Lit(USUAL), 96);
-        let path = pictures(Method::Path(USUAL), 192);
+        let lit = pictures(Method::Lit(USUAL), 48);
+        let path = pictures(Method::Path(USUAL), 48);
         // Dark blocks live of light so rare that their σ is not known.
         let most = path[..24].iter().map(|block| block.mean).fold(0.0, f64::max);
         let (mut squares, mut number) = (0.0, 0.0);
@@ -209,6 +209,34 @@ fn light_that_is_mirrored_to_a_glossy_floor_is_met_where_it_lands() {
     let sigma = lit.sigma.hypot(path.sigma);
     assert!((lit.mean - path.mean).abs() < 3.0 * sigma, "{lit:?} {path:?}");
     assert!(sigma < 0.03 * path.mean, "{lit:?} {path:?}");
+}
+
+#[test]
+fn errors_of_pixels_are_those_over_seeds_where_samples_share_what_landed() {
+    let floor = |world: &mut World| {
+        world.add_rough(metal(), 0.12, plate(-51.0, -50.0));
+    };
+    let scene = mirrored(floor, 4.0, DVec3::new(15.0, 75.0, 5.0));
+    let seeds = 48;
+    let (mut foretold, mut values) = (0.0, vec![Vec::new(); 32]);
+    for seed in 0..seeds {
+        let settings = RenderSettings {
+            width: 8,
+            height: 4,
+            seed,
+            bands_per_lane: 0,
+            ..Take::lit(112, USUAL).settings()
+        };
+        let film = render(&scene, &settings, &Progress::default()).unwrap().film;
+        for (pixel, own) in film.pixels.iter().zip(&mut values) {
+            own.push(pixel.mean()[1]);
+            foretold += pixel.standard_error()[1].powi(2) / seeds as f64;
+        }
+    }
+    let of_mean = |own: &Vec<f64>| Estimate::of(own.iter()).sigma.powi(2);
+    let found: f64 = values.iter().map(of_mean).sum::<f64>() * seeds as f64;
+    // About 1500 degrees of freedom of bright pixels' errors, whose photons are shared by neighbours.
+    assert!((foretold / found).ln().abs() < 0.25, "{foretold} {found}");
 }
 
 #[test]

@@ -54,6 +54,18 @@ pub struct PathSettings {
 }
 
 impl PathSettings {
+    /// How walks are spent that bring what is seen in mirrors and through smooth glass alone. An image
+    /// of a light after two faint mirrorings is followed always and weighs little, not rarely and as a dot;
+    /// splits are bounded, since a walk in many panes would have no end.
+    #[must_use]
+    pub fn of_sharp_light(self) -> Self {
+        Self {
+            split_depth: self.split_depth.max(12),
+            roulette_below: self.roulette_below.min(3e-4),
+            ..self
+        }
+    }
+
     /// How walks from lights are spent that serve a picture from the eye: docs/transport.md has what was
     /// measured.
     #[must_use]
