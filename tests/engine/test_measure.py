@@ -12,6 +12,7 @@ import pytest
 
 import lamplit as ll
 from lamplit.engine import BeamLight, MeasureInterrupted, Plane, RayLight
+from lamplit.engine.measure import in_laboratory
 from lamplit.engine.measurement import Measurement
 from lamplit.photometry.rays import RaySet, write_tm25
 from lamplit.scene import Scene
@@ -165,6 +166,49 @@ def test_the_eye_sees_what_the_light_sends(lamp_of: Callable[..., Scene]) -> Non
         assert (np.abs(check.sigmas) < 3.5).all()
         assert (check.light_standard_error_cd < 0.02 * check.light_cd).all()
         assert (check.eye_standard_error_cd < 0.03 * check.eye_cd).all()
+
+
+@pytest.mark.parametrize("roughness", [0.0, 0.3])
+def test_the_luminance_of_a_lit_picture_over_the_lamp_is_its_candela(
+    scene_of: Callable[..., Scene], roughness: float
+) -> None:
+    # ∫ L dA over the lamp as seen from far away is its intensity that way.
+    side, height_mm, angle = 32, 32.0, np.radians(25.0)
+    cover: Table = {"kind": "dielectric", "refractive_index": 1.5, "roughness": roughness}
+    scene = in_laboratory(
+        scene_of(
+            objects=[
+                disc(),
+                _box("cover", [-9.0, -9.0, 4.0], [9.0, 9.0, 7.0]),
+                _box("tray", [-9.0, -9.0, -2.0], [9.0, 9.0, -1.0]),
+            ],
+            materials=MATERIALS | {"cover": cover, "tray": {"kind": "diffuse", "reflectance": 0.7}},
+            measure={"axis": [0.0, 0.0, 1.0]},
+            camera={
+                "kind": "orthographic",
+                "position_mm": [100.0 * np.sin(angle), 0.0, 100.0 * np.cos(angle)],
+                "target_mm": [0.0, 0.0, 2.0],
+                "height_mm": height_mm,
+            },
+            image={"method": "lit", "width": side, "height": side, "samples": 64},
+        )
+    )
+    found = ll.measure(scene, spots=[(25.0, 0.0)], grid=COARSE, receiver_deg=9.0, paths=1 << 20)
+    seen = found.observed()
+    pixel_m2 = (height_mm / side * 1e-3) ** 2
+    pictures = [
+        ll.render(scene.changed(image=scene.image.model_copy(update={"seed": seed})))
+        for seed in range(8)
+    ]
+    totals = [picture.xyz[..., 1].sum() * pixel_m2 for picture in pictures]
+    candela, sigma = np.mean(totals), np.std(totals, ddof=1) / len(totals) ** 0.5
+    both = np.hypot(sigma, seen.spot_standard_error_cd[0])
+    assert abs(candela - seen.spot_cd[0]) < 4.0 * both, (candela, sigma, seen.spot_cd)
+    assert both < 0.02 * candela
+
+
+def _box(name: str, low_mm: list[float], high_mm: list[float]) -> Table:
+    return {"name": name, "kind": "box", "min_mm": low_mm, "max_mm": high_mm, "material": name}
 
 
 def test_a_plane_is_lit_by_the_inverse_square(lamp_of: Callable[..., Scene]) -> None:

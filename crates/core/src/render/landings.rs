@@ -13,6 +13,7 @@ use crate::transport::{
 };
 
 use super::settings::RenderSettings;
+use super::Progress;
 
 /// Keeps the random numbers of phases and trials apart from all others.
 const TO_CHOOSE: u64 = 0xBB67_AE85_84CA_A73B;
@@ -46,6 +47,7 @@ pub(super) struct Landings<'a> {
     scene: &'a Scene,
     walk: LightWalk<'a>,
     settings: &'a RenderSettings,
+    progress: &'a Progress,
     /// Walks from lights for each walk from the eye.
     share: f64,
     most_paths: f64,
@@ -64,7 +66,7 @@ impl<'a> Landings<'a> {
         scene: &'a Scene,
         source: &'a LightSource,
         path: PathSettings,
-        settings: &'a RenderSettings,
+        (settings, progress): (&'a RenderSettings, &'a Progress),
         interior: Interior,
     ) -> Result<Self, FluxError> {
         let walk = LightWalk::new(scene, source, path.from_lights())?;
@@ -74,6 +76,7 @@ impl<'a> Landings<'a> {
             scene,
             walk,
             settings,
+            progress,
             share,
             most_paths: 0.0,
             together: 1,
@@ -81,6 +84,10 @@ impl<'a> Landings<'a> {
             crowd,
         };
         let trial = own.land(u32::MAX, OF_TRIAL);
+        if trial.per_path() <= 0.0 {
+            // The fewest walks will do.
+            own.share = 0.0;
+        }
         let distance = trial.mean_distance(scene.camera.position());
         let pixels = PIXELS * scene.camera.pixel_mm(distance, settings.height);
         own.most_paths = (MOST_LANDED / trial.per_path().max(1.0)).max(FEWEST);
@@ -122,7 +129,8 @@ impl<'a> Landings<'a> {
         let seed = self.settings.seed;
         let sampler = PixelSequence::Sobol.sampler(seed ^ TO_CHOOSE, 0, number);
         let wavelengths = sampler.wavelengths(self.scene.phases());
-        Landed::walk(self.scene, &self.walk, (seed, number), wavelengths, paths)
+        let is_cancelled = || self.progress.is_cancelled();
+        Landed::walk(self.scene, &self.walk, (seed, number), wavelengths, paths, &is_cancelled)
     }
 }
 

@@ -116,7 +116,7 @@ pub fn render(
         let (guide, source) = (guide.as_deref(), LightSource::from(Shining::of(scene)));
         let shown = light_film(scene, &source, settings);
         let leaves_rough = shown.is_some();
-        let landings = landings(scene, &source, settings, interior);
+        let landings = landings(scene, &source, (settings, progress), interior);
         let rendering =
             Rendering { scene, settings, interior, guide, leaves_rough, landings, progress, began };
         Ok(rendering.run(shown))
@@ -127,13 +127,13 @@ pub fn render(
 fn landings<'a>(
     scene: &'a Scene,
     source: &'a LightSource,
-    settings: &'a RenderSettings,
+    (settings, progress): (&'a RenderSettings, &'a Progress),
     interior: Interior,
 ) -> Option<Landings<'a>> {
     let Method::Lit(path) = settings.method else {
         return None;
     };
-    Landings::new(scene, source, path, settings, interior).ok()
+    Landings::new(scene, source, path, (settings, progress), interior).ok()
 }
 
 /// The film of walks from lights, where these have a part: in a picture without spectra whose samples

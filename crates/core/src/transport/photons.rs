@@ -77,13 +77,15 @@ pub struct Landed {
 }
 
 impl Landed {
-    /// Walk light of the lanes `wavelengths`, with random numbers that no other `number` has.
+    /// Walk light of the lanes `wavelengths`, with random numbers that no other `number` has. What was
+    /// cancelled is not to be used.
     pub fn walk(
         scene: &Scene,
         walk: &LightWalk<'_>,
         (seed, number): (u64, u32),
         wavelengths: SampledWavelengths,
         paths: u32,
+        is_cancelled: &(dyn Fn() -> bool + Sync),
     ) -> Self {
         let each = paths.div_ceil(BATCHES);
         let share = 1.0 / f64::from(each * BATCHES);
@@ -94,7 +96,7 @@ impl Landed {
                 let mut ledgers = vec![Ledger::new(scene.bodies.len()); scene.groups];
                 let mut photons = Vec::new();
                 let own = u64::from(number) * u64::from(BATCHES) + u64::from(batch);
-                for path in 0..each {
+                for path in (0..each).take_while(|_| !is_cancelled()) {
                     let sampler = PixelSequence::Sobol.sampler(seed ^ TO_LAND, own, path);
                     let sampler = sampler.on_phase(wavelengths);
                     walk.walk(sampler, &mut tally, &mut ledgers, &mut |part| {

@@ -43,6 +43,22 @@ fn a_floor_under_a_bulb_is_as_bright_as_its_closed_form() {
 }
 
 #[test]
+fn an_opal_cover_lit_from_behind_is_as_bright_as_by_path() {
+    let mut world = World::dark();
+    let lamp = world.add(matt(0.0), disc(DVec3::ZERO, DVec3::Y, 1.0));
+    world.shine(lamp, Strength::Flux(flat(2.0)), 1);
+    world.add(matt(0.6), cuboid(DVec3::new(-20.0, -3.0, -20.0), DVec3::new(20.0, -1.0, 20.0)));
+    let opal = body(flat(1.49), flat(1e-3), Some((flat(1.0), 0.6)));
+    world.add(opal, cuboid(DVec3::new(-20.0, 6.0, -20.0), DVec3::new(20.0, 9.0, 20.0)));
+    let scene = world.along(DVec3::new(3.0, 60.0, 2.0), -DVec3::Y);
+    let path = Take::of(1 << 11, USUAL).luminance(&scene);
+    let lit = Take::lit(1 << 6, USUAL).by_seeds(16, &scene, None);
+    let sigma = lit.sigma.hypot(path.sigma);
+    assert!((lit.mean - path.mean).abs() < 3.0 * sigma, "{lit:?} {path:?}");
+    assert!(sigma < 0.08 * path.mean, "{lit:?} {path:?}");
+}
+
+#[test]
 fn what_was_learned_of_another_scene_changes_no_expectation() {
     // The right answer by a guide that knows a lamp elsewhere: under the floor's other end.
     let mut world = World::dark();
