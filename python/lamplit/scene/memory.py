@@ -17,7 +17,7 @@ _TRACER_BYTES_PER_TRIANGLE = 100
 #: A mesh as it is kept: float64 vertices, half as many as triangles, and 32-bit indices.
 _MESH_BYTES_PER_TRIANGLE = 3 * 4
 _MESH_BYTES_PER_VERTEX = 3 * 8
-#: Sums of X, Y and Z and what their errors need, counts, and means and errors as they are handed back.
+#: Sums of X, Y and Z and what their errors need, counts, and means and errors as handed back.
 _FILM_BYTES_PER_PIXEL = 88 + 8 + 2 * 24
 _BAND_BYTES_PER_PIXEL = 16
 _LAYER_BYTES_PER_PIXEL = 88 + 2 * 24
