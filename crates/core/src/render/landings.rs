@@ -4,21 +4,18 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::math::DVec2;
 use crate::sampling::PixelSequence;
 use crate::scene::{Interior, Scene};
 use crate::transport::{
-    Crowd, Eye, FluxError, Gathered, Landed, LightSource, LightWalk, Part, PathSettings, PathWalk,
-    Photons, Tally,
+    Crowd, FluxError, Landed, LightSource, LightWalk, Part, PathSettings, Photons,
 };
 
 use super::settings::RenderSettings;
+use super::trial::Trial;
 use super::Progress;
 
-/// Keeps the random numbers of phases and trials apart from all others.
+/// Keeps the random numbers of phases apart from all others.
 const TO_CHOOSE: u64 = 0xBB67_AE85_84CA_A73B;
-/// Walks from the eye that tell how many meet what landed.
-const TRIALS: usize = 1 << 11;
 /// Walks from lights for each such walk from the eye.
 const PER_MEETING: f64 = 6.0;
 /// About how much may land at once: a bound to the memory.
@@ -70,7 +67,9 @@ impl<'a> Landings<'a> {
         interior: Interior,
     ) -> Result<Self, FluxError> {
         let walk = LightWalk::new(scene, source, path.from_lights())?;
-        let share = (PER_MEETING * meetings(scene, path, settings, interior)).max(LEAST_SHARE);
+        let trial = Trial { scene, settings, interior };
+        let (_, meetings) = trial.means(path, Part::Scattered, Some(&Photons::none()));
+        let share = (PER_MEETING * meetings).max(LEAST_SHARE);
         let crowd = Arc::default();
         let mut own = Self {
             scene,
@@ -132,38 +131,4 @@ impl<'a> Landings<'a> {
         let is_cancelled = || self.progress.is_cancelled();
         Landed::walk(self.scene, &self.walk, (seed, number), wavelengths, paths, &is_cancelled)
     }
-}
-
-/// How many times a walk from the eye meets what landed, by what is sent on there.
-fn meetings(
-    scene: &Scene,
-    path: PathSettings,
-    settings: &RenderSettings,
-    interior: Interior,
-) -> f64 {
-    let nothing = Photons::none();
-    let mut gathered = Gathered::new(0);
-    let mut tally = Tally::new(scene.bodies.len());
-    let pixels = settings.pixels() as usize;
-    let (width, trials) = (settings.width as usize, TRIALS.min(pixels));
-    let mut met = 0.0;
-    for trial in 0..trials {
-        let pixel = trial * pixels / trials;
-        let place = DVec2::new((pixel % width) as f64 + 0.5, (pixel / width) as f64 + 0.5);
-        let sampler = PixelSequence::Sobol.sampler(settings.seed ^ TO_CHOOSE, pixel as u64, 0);
-        let wavelengths = sampler.wavelengths(scene.phases());
-        let ray = scene.camera.ray(place, sampler.lens(), settings.width, settings.height);
-        gathered.clear();
-        let eye = Eye {
-            gathered: &mut gathered,
-            part: Part::Scattered,
-            guide: None,
-            leaves_rough: false,
-            photons: Some(&nothing),
-        };
-        let start = (ray, interior);
-        PathWalk::gather(scene, path, wavelengths, sampler, &mut tally, eye, start);
-        met += gathered.met.min(1.0);
-    }
-    met / trials.max(1) as f64
 }

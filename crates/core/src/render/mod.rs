@@ -11,6 +11,7 @@ mod photometer;
 mod rendering;
 mod settings;
 mod snapshot;
+mod trial;
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Instant;
@@ -23,6 +24,7 @@ use crate::transport::{LightSource, Shining, Tally};
 use landings::Landings;
 use light_film::LightFilm;
 use rendering::Rendering;
+use trial::Trial;
 
 pub use features::{features, Features};
 pub use learning::learn;
@@ -117,8 +119,21 @@ pub fn render(
         let shown = light_film(scene, &source, settings);
         let leaves_rough = shown.is_some();
         let landings = landings(scene, &source, (settings, progress), interior);
-        let rendering =
-            Rendering { scene, settings, interior, guide, leaves_rough, landings, progress, began };
+        let sharp = match settings.method {
+            Method::Lit(path) => Some(Trial { scene, settings, interior }.sharp(path)),
+            _ => None,
+        };
+        let rendering = Rendering {
+            scene,
+            settings,
+            interior,
+            guide,
+            sharp,
+            leaves_rough,
+            landings,
+            progress,
+            began,
+        };
         Ok(rendering.run(shown))
     })
 }

@@ -12,7 +12,9 @@ use super::Progress;
 use crate::film::{BandSums, Batch, Film, PixelSums};
 use crate::math::DVec2;
 use crate::scene::{Interior, Scene};
-use crate::transport::{Eye, Gathered, Guide, HallWalk, Part, PathWalk, Photons, Tally};
+use crate::transport::{
+    Eye, Gathered, Guide, HallWalk, Part, PathSettings, PathWalk, Photons, Tally,
+};
 
 /// Some samples of every pixel.
 pub(super) struct Pass<'a> {
@@ -22,6 +24,8 @@ pub(super) struct Pass<'a> {
     pub interior: Interior,
     /// Which of the light.
     pub part: Part,
+    /// How walks for sharp light are spent, where that is apart.
+    pub sharp: Option<PathSettings>,
     pub samples: Range<u32>,
     /// How many samples each pixel takes in all, where that is not the same.
     pub limit: Option<&'a Allocation>,
@@ -159,7 +163,7 @@ impl Pass<'_> {
             }
             Method::Path(path) | Method::Lit(path) => {
                 let Self { part, guide, leaves_rough, photons, .. } = *self;
-                let path = if part == Part::Specular { path.of_sharp_light() } else { path };
+                let path = self.sharp.filter(|_| part == Part::Specular).unwrap_or(path);
                 let eye = Eye { gathered, part, guide, leaves_rough, photons };
                 PathWalk::gather(scene, path, wavelengths, sampler, tally, eye, start);
             }

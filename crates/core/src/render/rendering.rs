@@ -13,7 +13,10 @@ use super::settings::RenderSettings;
 use super::{Progress, Rendered};
 use crate::film::Film;
 use crate::scene::{Interior, Scene};
-use crate::transport::{Guide, Ledger, Part, Photons, Tally};
+use crate::transport::{Guide, Ledger, Part, PathSettings, Photons, Tally};
+
+/// The most samples between two looks at the clock.
+const MOST_TIMED: u32 = 8;
 
 /// A picture in the making.
 pub(super) struct Rendering<'a> {
@@ -21,6 +24,8 @@ pub(super) struct Rendering<'a> {
     pub settings: &'a RenderSettings,
     pub interior: Interior,
     pub guide: Option<&'a Guide>,
+    /// How walks for sharp light are spent, where that is apart.
+    pub sharp: Option<PathSettings>,
     /// Whether walks from lights show what they send through rough boundaries.
     pub leaves_rough: bool,
     /// What lands on surfaces, for the scattered part.
@@ -174,6 +179,10 @@ impl Rendering<'_> {
             next = until;
             self.progress.viewfinder.show(|| self.snapshot(exposures, shown, each));
             length = self.progress.viewfinder.next_length(length, pass_started.elapsed());
+            if self.settings.time_budget.is_some() {
+                // So that it is seen when the time is over.
+                length = length.min(MOST_TIMED);
+            }
             if self.is_overdue() {
                 break;
             }
@@ -203,7 +212,7 @@ impl Rendering<'_> {
 
     /// Take samples of one part of the light.
     fn expose_part(&self, exposure: &mut Exposure, samples: Range<u32>) -> Tally {
-        let Self { scene, settings, interior, guide, leaves_rough, progress, .. } = *self;
+        let Self { scene, settings, interior, guide, sharp, leaves_rough, progress, .. } = *self;
         let Exposure { part, film, limit } = exposure;
         let (part, limit) = (*part, limit.as_ref());
         let mut run = |samples: Range<u32>, photons: Option<&Photons>| {
@@ -212,6 +221,7 @@ impl Rendering<'_> {
                 settings,
                 interior,
                 part,
+                sharp,
                 samples,
                 limit,
                 leaves_rough,

@@ -58,9 +58,9 @@ impl PathSettings {
     /// of a light after two faint mirrorings is followed always and weighs little, not rarely and as a dot;
     /// splits are bounded, since a walk in many panes would have no end.
     #[must_use]
-    pub fn of_sharp_light(self) -> Self {
+    pub fn of_sharp_light(self, splits: u32) -> Self {
         Self {
-            split_depth: self.split_depth.max(12),
+            split_depth: self.split_depth.max(splits),
             roulette_below: self.roulette_below.min(3e-4),
             ..self
         }
