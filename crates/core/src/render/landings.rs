@@ -5,10 +5,8 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::sampling::PixelSequence;
-use crate::scene::{Interior, Scene};
-use crate::transport::{
-    Crowd, FluxError, Landed, LightSource, LightWalk, Part, PathSettings, Photons,
-};
+use crate::scene::Scene;
+use crate::transport::{Crowd, FluxError, Landed, LightSource, LightWalk, PathSettings, Photons};
 
 use super::settings::RenderSettings;
 use super::trial::Trial;
@@ -16,13 +14,12 @@ use super::Progress;
 
 /// Keeps the random numbers of phases apart from all others.
 const TO_CHOOSE: u64 = 0xBB67_AE85_84CA_A73B;
-/// Walks from lights for each such walk from the eye.
+/// Walks from lights for each time that a walk from the eye meets what landed.
 const PER_MEETING: f64 = 6.0;
 /// About how much may land at once: a bound to the memory.
 const MOST_LANDED: f64 = 262_144.0;
-/// The first samples each have walks of their own; later ones share what landed, so many as that bound
-/// lets, but no more than these. Where few of the photons in a disc come from where the surface mirrors, more
-/// of them are worth more than other places of the pixel.
+/// The first samples each have walks of their own; later ones share what landed, as many as memory lets, but
+/// no more than these. Of the photons in a disc a glossy surface answers few, at each place of the pixel others.
 const ALONE: u32 = 16;
 const MOST_TOGETHER: f64 = 8.0;
 /// The walks of the trial.
@@ -55,21 +52,19 @@ pub(super) struct Landings<'a> {
 }
 
 impl<'a> Landings<'a> {
-    /// See how many walks from an eye in `interior` meet what lands, and where that is.
+    /// See how many walks from the eye meet what lands, and where that is.
     ///
     /// # Errors
     /// There is no visible flux.
     pub fn new(
-        scene: &'a Scene,
+        trial: Trial<'a>,
         source: &'a LightSource,
         path: PathSettings,
-        (settings, progress): (&'a RenderSettings, &'a Progress),
-        interior: Interior,
+        progress: &'a Progress,
     ) -> Result<Self, FluxError> {
+        let Trial { scene, settings, .. } = trial;
         let walk = LightWalk::new(scene, source, path.from_lights())?;
-        let trial = Trial { scene, settings, interior };
-        let (_, meetings) = trial.means(path, Part::Scattered, Some(&Photons::none()));
-        let share = (PER_MEETING * meetings).max(LEAST_SHARE);
+        let share = (PER_MEETING * trial.meetings(path)).max(LEAST_SHARE);
         let crowd = Arc::default();
         let mut own = Self {
             scene,
@@ -84,7 +79,7 @@ impl<'a> Landings<'a> {
         };
         let trial = own.land(u32::MAX, OF_TRIAL);
         if trial.per_path() <= 0.0 {
-            // The fewest walks will do.
+            // Nothing that the trial found: the fewest walks will do.
             own.share = 0.0;
         }
         let distance = trial.mean_distance(scene.camera.position());

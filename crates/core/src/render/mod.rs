@@ -118,10 +118,13 @@ pub fn render(
         let (guide, source) = (guide.as_deref(), LightSource::from(Shining::of(scene)));
         let shown = light_film(scene, &source, settings);
         let leaves_rough = shown.is_some();
-        let landings = landings(scene, &source, (settings, progress), interior);
-        let sharp = match settings.method {
-            Method::Lit(path) => Some(Trial { scene, settings, interior }.sharp(path)),
-            _ => None,
+        let trial = Trial { scene, settings, interior };
+        let (landings, sharp) = match settings.method {
+            Method::Lit(path) => {
+                let landings = Landings::new(trial, &source, path, progress);
+                (landings.ok(), Some(trial.sharp(path)))
+            }
+            Method::Hall(_) | Method::Path(_) => (None, None),
         };
         let rendering = Rendering {
             scene,
@@ -136,19 +139,6 @@ pub fn render(
         };
         Ok(rendering.run(shown))
     })
-}
-
-/// The light that lands on surfaces, for methods that ask for it; nothing where nothing shines.
-fn landings<'a>(
-    scene: &'a Scene,
-    source: &'a LightSource,
-    (settings, progress): (&'a RenderSettings, &'a Progress),
-    interior: Interior,
-) -> Option<Landings<'a>> {
-    let Method::Lit(path) = settings.method else {
-        return None;
-    };
-    Landings::new(scene, source, path, (settings, progress), interior).ok()
 }
 
 /// The film of walks from lights, where these have a part: in a picture without spectra whose samples

@@ -65,7 +65,9 @@ impl Rendering<'_> {
             return Rendered::of(exposures, None, tally);
         };
         let eyes = Instant::now();
-        let first = samples.start..samples.start + pilot_samples;
+        // What one batch is has one error: rounds do not part it.
+        let end = samples.end.min(self.whole(samples.start + pilot_samples));
+        let first = samples.start..end;
         let rest = self.expose_first(&mut exposures, &mut tally, first);
         let pilot_samples = rest - samples.start;
         let mut shown = shown;
@@ -162,10 +164,10 @@ impl Rendering<'_> {
             })
         };
         let end = exposures.iter().map(most).max().unwrap_or(samples.end).min(samples.end);
-        let all = |exposure: &Exposure| {
-            let each = self.pixels() * u64::from(end.saturating_sub(samples.start));
-            exposure.limit.as_ref().map_or(each, Allocation::total)
-        };
+        // Until samples are allotted there will be about as many as were asked for, if a number was.
+        let known = if self.settings.is_open() { end } else { self.settings.samples.end };
+        let each = self.pixels() * u64::from(known.saturating_sub(self.settings.samples.start));
+        let all = |exposure: &Exposure| exposure.limit.as_ref().map_or(each, Allocation::total);
         self.progress.total.store(exposures.iter().map(all).sum(), Ordering::Relaxed);
         let (mut next, mut length) = (samples.start, 1);
         let is_counted = !self.settings.allots() && time_budget.is_none();
@@ -241,6 +243,10 @@ impl Rendering<'_> {
                     let until = samples.end.min(first.saturating_add(batch.end));
                     let taken = |own| limit.map_or(self.pixels(), |limit| limit.taking(own));
                     let all = (next - first..until - first).map(taken).sum();
+                    if all == 0 {
+                        // Only the other part has pixels with so many samples.
+                        break;
+                    }
                     let photons = landings.of_batch(number, &batch, all);
                     tally.add(&run(next..until, Some(&photons)));
                     tally.eye_rays += photons.segments();

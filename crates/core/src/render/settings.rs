@@ -91,13 +91,17 @@ impl RenderSettings {
         self.adaptive && self.counts.is_none()
     }
 
+    /// Whether an error or a time, not a number of samples, says when it is enough.
+    pub(super) fn is_open(&self) -> bool {
+        self.target_error.is_some() || self.time_budget.is_some()
+    }
+
     /// How many samples of every pixel the first round has, if what comes after it is allotted by it: a
     /// quarter of all where their number is known. A picture of one pixel has no neighbours to learn
     /// from, and a round that takes all samples leaves none to allot.
     pub(super) fn first_round(&self) -> Option<u32> {
         let samples = self.samples.len() as u32;
-        let is_open = self.target_error.is_some() || self.time_budget.is_some();
-        let wanted = if is_open { Pilot::USUAL } else { samples / 4 };
+        let wanted = if self.is_open() { Pilot::USUAL } else { samples / 4 };
         let first = wanted.clamp(Pilot::FEWEST, Pilot::MOST);
         (self.allots() && self.pixels() > 1 && first < samples).then_some(first)
     }

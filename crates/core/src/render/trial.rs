@@ -11,9 +11,9 @@ use crate::transport::{Eye, Gathered, Part, PathSettings, PathWalk, Photons, Tal
 const TO_TRY: u64 = 0x3C6E_F372_FE94_F82B;
 /// How many walks there are at most, one a pixel.
 const WALKS: usize = 1 << 11;
-/// The most splits of walks for sharp light, and how many segments a walk may have then, on average.
-const MOST_SPLITS: u32 = 12;
-const MOST_SEGMENTS: f64 = 64.0;
+/// The splits of walks for sharp light that are tried, and how many segments a walk may have then, on average.
+const SPLITS: [u32; 3] = [12, 8, 4];
+const MOST_SEGMENTS: u64 = 64;
 
 /// Walks through pixels that are spread evenly over the picture.
 #[derive(Clone, Copy)]
@@ -26,26 +26,44 @@ pub(super) struct Trial<'a> {
 impl Trial<'_> {
     /// How walks for sharp light are spent: with as many splits as their length lets.
     pub fn sharp(&self, path: PathSettings) -> PathSettings {
-        let mut splits = MOST_SPLITS;
-        while splits > path.split_depth {
-            let own = path.of_sharp_light(splits);
-            let (segments, _) = self.means(own, Part::Specular, None);
-            if segments <= MOST_SEGMENTS {
-                return own;
-            }
-            splits -= 2;
-        }
-        path
+        let is_short = |own: &PathSettings| {
+            let mut walks = 0;
+            self.walk(*own, Part::Specular, None, |_, segments| {
+                walks += 1;
+                segments <= MOST_SEGMENTS * self.walks() as u64
+            });
+            walks == self.walks()
+        };
+        SPLITS.map(|splits| path.of_sharp_light(splits)).into_iter().find(is_short).unwrap_or(path)
     }
 
-    /// How many segments a walk has, and how many times it meets what landed, by what is sent on there.
-    pub fn means(&self, path: PathSettings, part: Part, photons: Option<&Photons>) -> (f64, f64) {
+    /// How many times a walk meets what landed, by what is sent on there.
+    pub fn meetings(&self, path: PathSettings) -> f64 {
+        let mut met = 0.0;
+        self.walk(path, Part::Scattered, Some(&Photons::none()), |gathered, _| {
+            met += gathered.met.min(1.0);
+            true
+        });
+        met / self.walks() as f64
+    }
+
+    fn walks(&self) -> usize {
+        WALKS.min(self.settings.pixels() as usize).max(1)
+    }
+
+    /// Walk until `goes_on`, which is shown what each walk brought and the segments of all so far, says no.
+    fn walk(
+        &self,
+        path: PathSettings,
+        part: Part,
+        photons: Option<&Photons>,
+        mut goes_on: impl FnMut(&Gathered, u64) -> bool,
+    ) {
         let Self { scene, settings, interior } = *self;
         let mut gathered = Gathered::new(0);
         let mut tally = Tally::new(scene.bodies.len());
         let pixels = settings.pixels() as usize;
-        let (width, walks) = (settings.width as usize, WALKS.min(pixels));
-        let mut met = 0.0;
+        let (width, walks) = (settings.width as usize, self.walks());
         for walk in 0..walks {
             let pixel = walk * pixels / walks;
             let place = DVec2::new((pixel % width) as f64 + 0.5, (pixel / width) as f64 + 0.5);
@@ -53,12 +71,12 @@ impl Trial<'_> {
             let wavelengths = sampler.wavelengths(scene.phases());
             let ray = scene.camera.ray(place, sampler.lens(), settings.width, settings.height);
             gathered.clear();
-            let gathered = &mut gathered;
-            let eye = Eye { gathered, part, guide: None, leaves_rough: false, photons };
+            let eye =
+                Eye { gathered: &mut gathered, part, guide: None, leaves_rough: false, photons };
             PathWalk::gather(scene, path, wavelengths, sampler, &mut tally, eye, (ray, interior));
-            met += gathered.met.min(1.0);
+            if !goes_on(&gathered, tally.segments()) {
+                break;
+            }
         }
-        let number = walks.max(1) as f64;
-        (tally.segments() as f64 / number, met / number)
     }
 }

@@ -131,7 +131,8 @@ fn blocks(film: &Film) -> Vec<f64> {
 
 #[test]
 fn light_from_the_lamps_and_light_found_from_the_eye_make_the_picture_that_the_eye_finds() {
-    // Behind a very rough pane what has landed is met; a less rough one is shown to the camera.
+    // Behind a very rough pane what has landed is met, in discs of some pixels, which are small beside
+    // the blocks; a less rough one is shown to the camera.
     let whole = |alpha: f64| vec![(alpha, [-12.0, 12.0])];
     for (projection, panes) in [
         (Projection::Pinhole { field_of_view_deg: 24.0 }, whole(0.3)),
