@@ -36,7 +36,7 @@ def seen(root: Path, objects: list[Table], background: Table, **more: Any) -> ll
         },
         root=root,
     )
-    return ll.render(scene)
+    return ll.render(scene, method="path")
 
 
 def disc(**emission: Any) -> Table:
