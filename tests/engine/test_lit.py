@@ -73,11 +73,11 @@ def test_what_landed_takes_memory_that_is_foretold(scene_of: Callable[..., Any])
     small, large = (
         memory_estimate(bulb(scene_of, width=side, height=side)).film_bytes for side in (10, 1000)
     )
-    # Two films and 16 pictures, and twice 216 bytes: for 12 photons a pixel of each of
+    # Two films and 16 pictures, and twice 256 bytes and 24: for 12 photons a pixel of each of
     # eight samples, for 2^18 at most.
     per_pixel = 2 * 144 + 16 * 24
-    assert small == 100 * (per_pixel + 8 * 12 * 432)
-    assert large == 1_000_000 * per_pixel + 2**18 * 432
+    assert small == 100 * (per_pixel + 8 * 12 * 536)
+    assert large == 1_000_000 * per_pixel + 2**18 * 536
 
 
 def test_path_finds_all_by_the_eye(scene_of: Callable[..., Any]) -> None:
@@ -133,4 +133,4 @@ def test_the_few_samples_of_a_frosted_bulb_show_its_light(scene_of: Callable[...
 def test_the_films_of_a_lit_picture_are_foretold(scene_of: Callable[..., Any]) -> None:
     lit, path = (memory_estimate(bulb(scene_of, method=method)) for method in ("auto", "path"))
     # Two films of 144 bytes a pixel instead of one, 16 times three doubles, and what landed.
-    assert lit.film_bytes - path.film_bytes == (144 + 16 * 24 + 8 * 12 * 432) * 12 * 10
+    assert lit.film_bytes - path.film_bytes == (144 + 16 * 24 + 8 * 12 * 536) * 12 * 10

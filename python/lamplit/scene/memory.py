@@ -25,9 +25,9 @@ _LAYER_BYTES_PER_PIXEL = 88 + 2 * 24
 _GLARE_BYTES_PER_PIXEL = 210
 #: Where light is shown through rough covers: 16 pictures of X, Y, Z, by light group with layers.
 _SHOWN_BYTES_PER_PIXEL = 16 * 24
-#: Light that landed, twice while it is sorted: so much of it at most, and about so much per pixel,
-#: of as many samples as share it.
-_LANDED_BYTES = 2 * 216
+#: Light that landed, twice while it is sorted, and its places: so much of it at most, and about so
+#: much per pixel, of as many samples as share it.
+_LANDED_BYTES = 2 * 256 + 24
 _MOST_LANDED, _LANDED_PER_PIXEL = 2**18, 8 * 12
 #: Spectral bands of a pixel, at most.
 MOST_BANDS = 80

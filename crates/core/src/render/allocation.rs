@@ -5,15 +5,18 @@
 //! samples decided how many more it takes would stop when they happen to agree, and be biased. So
 //! the pixels are coloured like a chess board, and all that is decided about a pixel (its noise, its
 //! cost, and the scale of both) comes from pixels of the other colour alone.
+//!
+//! Neighbours do not see a light of one pixel's size. A film whose samples are cheap has its first round
+//! set aside, and other samples make the picture: there, each pixel decides with its neighbours.
 
 use super::light_film::LightTrial;
-use crate::film::Film;
+use crate::film::{Film, PixelSums};
 use crate::sampling::PixelSequence;
 
 /// What a first round of samples tells of every pixel, on each of the films whose sum is the picture.
 pub(super) struct Pilot {
     films: Vec<Trial>,
-    /// The tone of every pixel: its luminance, held off black.
+    /// The tone of every pixel: its luminance, held off black and within bounds.
     pub tone: Vec<f64>,
     light: Option<LightTrial>,
     width: usize,
@@ -26,8 +29,17 @@ struct Trial {
     noise: Vec<f64>,
     /// Segments that one sample takes, as the neighbours have it.
     cost: Vec<f64>,
-    /// Samples that every pixel has.
-    samples: u32,
+    /// The fewest samples of a pixel: those that it has, if they are kept.
+    least: u32,
+    /// Samples that every pixel took and that are not kept.
+    set_aside: u32,
+}
+
+/// A first round of samples on one film.
+pub(super) struct FirstRound<'a> {
+    pub film: &'a Film,
+    /// Whether it stays in the picture.
+    pub is_kept: bool,
 }
 
 /// How many samples each pixel takes, those of the first round included.
@@ -38,6 +50,13 @@ pub(super) struct Allocation {
 /// The tone of a pixel is its luminance and this share of the picture's mean: a relative error of
 /// black has no meaning.
 const FLOOR: f64 = 0.01;
+
+/// The tone of a pixel with this luminance in a picture of `pixels` with this mean. What is brighter than the
+/// mean by more than the root of their number is not brighter here: else a pixel whose error no eye sees
+/// would be most of the error of the picture's flux.
+fn tone_of(luminance: f64, mean: f64, pixels: usize) -> f64 {
+    (luminance + FLOOR * mean).min((pixels as f64).sqrt() * mean)
+}
 
 /// No pixel is taken to be quieter than this share of the mean noise, since its neighbours may have
 /// missed what is bright and rare, nor louder than this multiple, since they may have met it by
@@ -68,19 +87,34 @@ impl Pilot {
     /// Its samples where it is not known how many there will be.
     pub const USUAL: u32 = 16;
 
-    /// Read a first round.
-    pub fn of(films: &[&Film]) -> Self {
-        let width = films[0].width as usize;
-        let mut luminance = vec![0.0; films[0].pixels.len()];
-        for film in films {
-            for (sum, pixel) in luminance.iter_mut().zip(&film.pixels) {
-                *sum += pixel.mean()[1];
+    /// Read the first rounds of all films.
+    pub fn of(rounds: &[FirstRound<'_>]) -> Self {
+        let width = rounds[0].film.width as usize;
+        let pixels = rounds[0].film.pixels.len();
+        let of_kind = |is_kept: bool| {
+            let mut sums = vec![0.0; pixels];
+            for round in rounds.iter().filter(|round| round.is_kept == is_kept) {
+                for (sum, pixel) in sums.iter_mut().zip(&round.film.pixels) {
+                    *sum += pixel.mean()[1];
+                }
             }
-        }
+            sums
+        };
+        let [kept, set_aside] = [true, false].map(of_kind);
+        let luminance: Vec<f64> = kept.iter().zip(&set_aside).map(|(a, b)| a + b).collect();
         let means = by_colour(&luminance, width);
         let tone = luminance.iter().enumerate();
-        let tone: Vec<f64> = tone.map(|(at, own)| own + FLOOR * means[colour(at, width)]).collect();
-        let mut films: Vec<Trial> = films.iter().map(|film| Trial::of(film, &tone)).collect();
+        let tone: Vec<f64> =
+            tone.map(|(at, own)| tone_of(*own, means[colour(at, width)], pixels)).collect();
+        // Its own, by all that is set aside, and what is kept of the other colour.
+        let found = set_aside.iter().sum::<f64>() / pixels as f64;
+        let means = by_colour(&kept, width).map(|mean| mean + found);
+        let own_tone = set_aside.iter().zip(round(&kept, width)).enumerate();
+        let own_tone: Vec<f64> = own_tone
+            .map(|(at, (a, b))| tone_of(a + b, means[1 - colour(at, width)], pixels))
+            .collect();
+        let mut films: Vec<Trial> =
+            rounds.iter().map(|round| Trial::of(round, &tone, &own_tone)).collect();
         hold(&mut films, width);
         Self { films, tone, light: None, width }
     }
@@ -117,7 +151,8 @@ impl Pilot {
         let all = 0..self.films[0].noise.len();
         let own: Vec<usize> = all.filter(|at| colour(*at, self.width) == of_colour).collect();
         let pixels = || self.films.iter().flat_map(|trial| own.iter().map(move |at| (trial, *at)));
-        let affordable = mean_samples * pixels().map(|(trial, at)| trial.cost[at]).sum::<f64>();
+        let left = |trial: &Trial| mean_samples - f64::from(trial.set_aside);
+        let affordable: f64 = pixels().map(|(trial, at)| left(trial) * trial.cost[at]).sum();
         let suffices = |scale: f64| {
             let (mut cost, mut squares) = (0.0, 0.0);
             if let Some(light) = &self.light {
@@ -151,32 +186,42 @@ impl Pilot {
 }
 
 impl Trial {
-    fn of(film: &Film, tone: &[f64]) -> Self {
+    fn of(round: &FirstRound<'_>, tone: &[f64], own_tone: &[f64]) -> Self {
+        let FirstRound { film, is_kept } = *round;
         let (width, pixels) = (film.width as usize, &film.pixels);
-        let noise: Vec<f64> = pixels
-            .iter()
-            .zip(tone)
-            .map(|(pixel, tone)| {
-                let variance = pixel.standard_error()[1].powi(2) * f64::from(pixel.samples);
+        let relative = |tone: &[f64]| -> Vec<f64> {
+            let variance =
+                |pixel: &PixelSums| pixel.standard_error()[1].powi(2) * f64::from(pixel.samples);
+            let share = |(pixel, tone): (_, &f64)| {
                 if *tone > 0.0 {
-                    variance / (tone * tone)
+                    variance(pixel) / (tone * tone)
                 } else {
                     0.0
                 }
-            })
-            .collect();
+            };
+            pixels.iter().zip(tone).map(share).collect()
+        };
         let cost = film.segments.iter().zip(pixels);
         let cost = cost.map(|(segments, pixel)| *segments as f64 / f64::from(pixel.samples.max(1)));
-        let cost: Vec<f64> = cost.map(|cost| cost.max(1.0)).collect();
-        let noise = round(&noise, width).iter().map(|variance| variance.sqrt()).collect();
+        let mut cost: Vec<f64> = cost.map(|cost| cost.max(1.0)).collect();
+        let mut variance = self::round(&relative(tone), width);
         let samples = pixels.iter().map(|pixel| pixel.samples).max().unwrap_or(0);
-        Self { noise, cost: round(&cost, width), samples }
+        let (least, set_aside) = if is_kept {
+            cost = self::round(&cost, width);
+            (samples, 0)
+        } else {
+            let own = relative(own_tone);
+            variance.iter_mut().zip(own).for_each(|(round, own)| *round = round.max(own));
+            (samples.min(Pilot::FEWEST), samples)
+        };
+        let noise = variance.iter().map(|variance| variance.sqrt()).collect();
+        Self { noise, cost, least, set_aside }
     }
 
     fn count(&self, at: usize, scale: f64) -> u32 {
         const MOST: f64 = PixelSequence::MOST_SAMPLES as f64;
         let wanted = scale * self.noise[at] / self.cost[at].sqrt();
-        wanted.ceil().clamp(f64::from(self.samples), MOST.max(f64::from(self.samples))) as u32
+        wanted.ceil().clamp(f64::from(self.least), MOST.max(f64::from(self.least))) as u32
     }
 }
 
@@ -213,9 +258,12 @@ fn hold(films: &mut [Trial], width: usize) {
     let means: Vec<_> = films.iter().map(|trial| by_colour(&trial.noise, width)).collect();
     let most = [0, 1].map(|colour| means.iter().map(|own| own[colour]).fold(0.0, f64::max));
     for (trial, own) in films.iter_mut().zip(&means) {
+        // What its own samples met it did not meet by its neighbours' chance.
+        let decides_itself = trial.set_aside > 0;
         for (at, noise) in trial.noise.iter_mut().enumerate() {
             let colour = colour(at, width);
-            *noise = noise.clamp(QUIETEST * own[colour], LOUDEST * most[colour]);
+            let loudest = if decides_itself { f64::INFINITY } else { LOUDEST * most[colour] };
+            *noise = noise.clamp(QUIETEST * own[colour], loudest);
         }
     }
 }
@@ -276,6 +324,10 @@ mod tests {
         film
     }
 
+    fn pilot(film: &Film) -> Pilot {
+        Pilot::of(&[FirstRound { film, is_kept: true }])
+    }
+
     fn at(column: u32, row: u32) -> usize {
         (row * SIZE + column) as usize
     }
@@ -293,16 +345,41 @@ mod tests {
         loud.segments[own] = 1000;
         for target in [None, Some(0.01)] {
             let [quiet, loud] =
-                [&quiet, &loud].map(|film| Pilot::of(&[film]).allocate(64.0, target).0.remove(0));
+                [&quiet, &loud].map(|film| pilot(film).allocate(64.0, target).0.remove(0));
             assert_eq!(quiet.of(own), loud.of(own), "{target:?}");
             assert_ne!(quiet.of(at(5, 6)), loud.of(at(5, 6)), "{target:?}");
         }
     }
 
     #[test]
+    fn a_pixel_whose_first_round_is_set_aside_decides_itself_and_by_nothing_that_is_kept() {
+        let of = |kept: &Film, set_aside: &Film| {
+            let rounds = [(kept, true), (set_aside, false)];
+            let pilot = Pilot::of(&rounds.map(|(film, is_kept)| FirstRound { film, is_kept }));
+            let (counts, _) = pilot.allocate(64.0, None);
+            [counts[0].of(at(5, 5)), counts[1].of(at(5, 5))]
+        };
+        let quiet = film(|_, _| 0.1);
+        let mut lone = film(|_, _| 0.1);
+        let own = &mut lone.pixels[at(5, 5)];
+        *own = PixelSums::default();
+        (0..16).for_each(|sample| own.add([if sample == 3 { 500.0 } else { 1.0 }; 3]));
+        let [_, found] = of(&quiet, &lone);
+        let [_, missed] = of(&quiet, &quiet);
+        assert!(found > 20 * missed, "{found} {missed}");
+        assert_eq!(of(&lone, &quiet), of(&quiet, &quiet));
+    }
+
+    #[test]
+    fn a_pixel_is_no_brighter_than_all_of_the_picture_s_noise_lets_it_be() {
+        assert_eq!(tone_of(3.0, 100.0, 64), 4.0);
+        assert_eq!(tone_of(1e9, 100.0, 64), 800.0);
+    }
+
+    #[test]
     fn counts_follow_the_noise_round_a_pixel_and_spend_what_there_is() {
         let film = film(|column, _| if column < 6 { 0.3 } else { 0.1 });
-        let allocation = Pilot::of(&[&film]).allocate(200.0, None).0.remove(0);
+        let allocation = pilot(&film).allocate(200.0, None).0.remove(0);
         let ratio = f64::from(allocation.of(at(2, 6))) / f64::from(allocation.of(at(9, 6)));
         assert!((ratio - 3.0).abs() < 0.05, "{ratio}");
         let mean = allocation.total() as f64 / f64::from(SIZE * SIZE);
@@ -311,7 +388,7 @@ mod tests {
 
     #[test]
     fn a_target_takes_no_more_samples_than_it_needs() {
-        let allocation = Pilot::of(&[&film(|_, _| 0.5)]).allocate(1e5, Some(0.01)).0.remove(0);
+        let allocation = pilot(&film(|_, _| 0.5)).allocate(1e5, Some(0.01)).0.remove(0);
         // Relative to a tone of 1.01: (0.5/1.01/0.01)² samples.
         let expected = (0.5_f64 / 1.01 / 0.01).powi(2).ceil() as u32;
         assert!(allocation.counts.iter().all(|count| count.abs_diff(expected) <= 1));
@@ -323,7 +400,7 @@ mod tests {
         for (pixel, segments) in film.segments.iter_mut().enumerate() {
             *segments = if pixel % (SIZE as usize) < 6 { 64 } else { 16 };
         }
-        let allocation = Pilot::of(&[&film]).allocate(1000.0, None).0.remove(0);
+        let allocation = pilot(&film).allocate(1000.0, None).0.remove(0);
         let ratio = f64::from(allocation.of(at(9, 6))) / f64::from(allocation.of(at(2, 6)));
         assert!((ratio - 2.0).abs() < 0.01, "{ratio}");
     }
@@ -332,7 +409,7 @@ mod tests {
     fn walks_from_lights_share_by_their_noise_and_cost() {
         // As noisy as all pixels together, and four times as dear: half as many.
         let film = film(|_, _| 0.2);
-        let mut pilot = Pilot::of(&[&film]);
+        let mut pilot = pilot(&film);
         let pixels = f64::from(SIZE * SIZE);
         let variance = pixels * (0.2_f64 / 1.01).powi(2);
         pilot.share_with(LightTrial { variance, cost: 4.0 });
@@ -347,6 +424,6 @@ mod tests {
     fn a_black_picture_takes_the_least() {
         let mut film = Film::new(2, 2, 0, 0);
         film.pixels.iter_mut().for_each(|pixel| (0..16).for_each(|_| pixel.add([0.0; 3])));
-        assert_eq!(Pilot::of(&[&film]).allocate(1000.0, Some(0.01)).0[0].total(), 4 * 16);
+        assert_eq!(pilot(&film).allocate(1000.0, Some(0.01)).0[0].total(), 4 * 16);
     }
 }

@@ -27,6 +27,8 @@ pub(super) struct Pass<'a> {
     /// How walks for sharp light are spent, where that is apart.
     pub sharp: Option<PathSettings>,
     pub samples: Range<u32>,
+    /// What keys their random numbers.
+    pub seed: u64,
     /// How many samples each pixel takes in all, where that is not the same.
     pub limit: Option<&'a Allocation>,
     /// Whether walks from lights show what they send through rough boundaries.
@@ -144,7 +146,7 @@ impl Pass<'_> {
         tally: &mut Tally,
     ) -> crate::spectrum::SampledWavelengths {
         let (scene, settings) = (self.scene, self.settings);
-        let sampler = settings.sequence.sampler(settings.seed, number as u64, sample);
+        let sampler = settings.sequence.sampler(self.seed, number as u64, sample);
         let sampler = match self.photons {
             Some(photons) => sampler.on_phase(photons.wavelengths()),
             None => sampler,

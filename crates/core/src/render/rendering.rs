@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-use super::allocation::{Allocation, Pilot};
+use super::allocation::{Allocation, FirstRound, Pilot};
 use super::landings::Landings;
 use super::light_film::LightFilm;
 use super::pass::Pass;
@@ -15,6 +15,8 @@ use crate::film::Film;
 use crate::scene::{Interior, Scene};
 use crate::transport::{Guide, Ledger, Part, PathSettings, Photons, Tally};
 
+/// Keeps the random numbers of what is set aside and of all others apart.
+const TO_TRY: u64 = 0xA54F_F53A_5F1D_36F1;
 /// The most samples between two looks at the clock.
 const MOST_TIMED: u32 = 8;
 
@@ -38,20 +40,32 @@ pub(super) struct Rendering<'a> {
 pub(super) struct Exposure {
     pub part: Part,
     pub film: Film,
+    /// What keys its random numbers.
+    seed: u64,
     /// How many samples each pixel takes in all, once that is decided.
     pub limit: Option<Allocation>,
+    /// Samples of all pixels that it took and that are not on the film.
+    set_aside: u64,
+}
+
+impl Exposure {
+    /// Whether its first round stays in the picture: walks for sharp light are short, and what they look for
+    /// may be no larger than a pixel, so that no neighbour knows.
+    fn keeps_first_round(&self) -> bool {
+        self.part != Part::Specular
+    }
+
+    fn first_round(&self) -> FirstRound<'_> {
+        FirstRound { film: &self.film, is_kept: self.keeps_first_round() }
+    }
 }
 
 impl Rendering<'_> {
     /// Expose all films, and add them up.
     pub fn run(&self, shown: Option<LightFilm<'_>>) -> Rendered {
         let samples = self.settings.samples.clone();
-        let new = |part: &Part| Exposure {
-            part: *part,
-            film: self.settings.new_film(self.scene),
-            limit: None,
-        };
-        let mut exposures: Vec<Exposure> = self.settings.parts().iter().map(new).collect();
+        let parts = self.settings.parts().iter();
+        let mut exposures: Vec<Exposure> = parts.map(|part| self.new_exposure(*part)).collect();
         let mut tally = Tally::new(self.scene.bodies.len());
         if let Some(counts) = &self.settings.counts {
             for exposure in &mut exposures {
@@ -68,6 +82,9 @@ impl Rendering<'_> {
         // What one batch is has one error: rounds do not part it.
         let end = samples.end.min(self.whole(samples.start + pilot_samples));
         let first = samples.start..end;
+        for exposure in exposures.iter_mut().filter(|exposure| !exposure.keeps_first_round()) {
+            exposure.seed ^= TO_TRY;
+        }
         let rest = self.expose_first(&mut exposures, &mut tally, first);
         let pilot_samples = rest - samples.start;
         let mut shown = shown;
@@ -78,9 +95,29 @@ impl Rendering<'_> {
                 shown.begin_anew();
                 shown.walk(LightFilm::per_batch(paths), self.progress);
             }
+            self.begin_anew(&mut exposures, &mut tally, samples.start..rest);
             self.expose(&mut exposures, &mut tally, rest..u32::MAX, None, shown.as_ref());
         }
         Rendered::of(exposures, shown, tally)
+    }
+
+    fn new_exposure(&self, part: Part) -> Exposure {
+        let (film, seed) = (self.settings.new_film(self.scene), self.settings.seed);
+        Exposure { part, film, seed, limit: None, set_aside: 0 }
+    }
+
+    /// Set aside the first `samples` where they are not kept, and take others in their place.
+    fn begin_anew(&self, exposures: &mut [Exposure], tally: &mut Tally, samples: Range<u32>) {
+        for exposure in exposures.iter_mut().filter(|exposure| !exposure.keeps_first_round()) {
+            let set_aside = self.pixels() * u64::from(samples.end - samples.start);
+            let limit = exposure.limit.take();
+            let mut anew = Exposure { limit, set_aside, ..self.new_exposure(exposure.part) };
+            tally.add(&self.expose_part(&mut anew, samples.clone()));
+            if self.progress.is_cancelled() {
+                return;
+            }
+            *exposure = anew;
+        }
     }
 
     /// The first round, as far as a quarter of the time allows; the number of the sample after it.
@@ -116,10 +153,10 @@ impl Rendering<'_> {
         shown: Option<&mut LightFilm<'_>>,
         affordable: f64,
     ) -> f64 {
-        let films: Vec<&Film> = exposures.iter().map(|exposure| &exposure.film).collect();
-        let mut pilot = Pilot::of(&films);
+        let rounds: Vec<FirstRound<'_>> = exposures.iter().map(Exposure::first_round).collect();
+        let mut pilot = Pilot::of(&rounds);
         if let Some(shown) = shown {
-            let segments = films.iter().flat_map(|film| &film.segments).sum::<u64>();
+            let segments = rounds.iter().flat_map(|round| &round.film.segments).sum::<u64>();
             shown.walk(LightFilm::FEWEST, self.progress);
             // Light that is walled in where it starts takes no segments at all.
             let is_short = |shown: &LightFilm<'_>| {
@@ -167,7 +204,9 @@ impl Rendering<'_> {
         // Until samples are allotted there will be about as many as were asked for, if a number was.
         let known = if self.settings.is_open() { end } else { self.settings.samples.end };
         let each = self.pixels() * u64::from(known.saturating_sub(self.settings.samples.start));
-        let all = |exposure: &Exposure| exposure.limit.as_ref().map_or(each, Allocation::total);
+        let all = |exposure: &Exposure| {
+            exposure.set_aside + exposure.limit.as_ref().map_or(each, Allocation::total)
+        };
         self.progress.total.store(exposures.iter().map(all).sum(), Ordering::Relaxed);
         let (mut next, mut length) = (samples.start, 1);
         let is_counted = !self.settings.allots() && time_budget.is_none();
@@ -215,8 +254,8 @@ impl Rendering<'_> {
     /// Take samples of one part of the light.
     fn expose_part(&self, exposure: &mut Exposure, samples: Range<u32>) -> Tally {
         let Self { scene, settings, interior, guide, sharp, leaves_rough, progress, .. } = *self;
-        let Exposure { part, film, limit } = exposure;
-        let (part, limit) = (*part, limit.as_ref());
+        let Exposure { part, film, seed, limit, .. } = exposure;
+        let (part, seed, limit) = (*part, *seed, limit.as_ref());
         let mut run = |samples: Range<u32>, photons: Option<&Photons>| {
             let pass = Pass {
                 scene,
@@ -225,6 +264,7 @@ impl Rendering<'_> {
                 part,
                 sharp,
                 samples,
+                seed,
                 limit,
                 leaves_rough,
                 guide,

@@ -9,7 +9,7 @@ use super::interior::Interior;
 use crate::geometry::{Primitive, SurfacePoint, TriangleHit, Triangles};
 use crate::light::{Background, Light};
 use crate::math::{DVec3, Ray};
-use crate::matter::{Dielectric, Material};
+use crate::matter::{Dielectric, Finish, Material};
 use crate::spectrum::{SampledSpectrum, SampledWavelengths, SpectralTable};
 
 /// Where a ray meets the scene.
@@ -139,9 +139,17 @@ impl Scene {
 
     /// Whether a transparent body has a rough face.
     pub fn has_slightly_rough_glass(&self) -> bool {
-        self.materials
-            .iter()
-            .any(|material| material.dielectric().is_some() && material.finish.is_slightly_rough())
+        self.has_glass_of(Finish::is_slightly_rough)
+    }
+
+    /// Whether there is transparent matter with a rough surface.
+    pub fn has_rough_glass(&self) -> bool {
+        self.has_glass_of(Finish::is_rough)
+    }
+
+    fn has_glass_of(&self, finish: impl Fn(&Finish) -> bool) -> bool {
+        let is_it = |own: &Material| own.dielectric().is_some() && finish(&own.finish);
+        self.materials.iter().any(is_it)
     }
 
     /// The share of the light that a surface, met from `interior`, sends back or on when it arrives

@@ -5,7 +5,7 @@
 //! in just the direction that the lens mirrors into a die. Walks from the lights land there by
 //! themselves. So the two meet: a walk from the eye takes the light that landed within a small disc
 //! round the place where it arrives. Light that came to opaque matter by refraction alone, or straight,
-//! is not kept: walks from the eye find it without any blur.
+//! is not met there but behind rough boundaries: walks from the eye find it without any blur.
 //!
 //! Every sample of the pixels has photons of its own, so that samples stay independent, and its discs
 //! are smaller than those before it: the blur goes to nothing, and so does the noise.
@@ -55,6 +55,8 @@ pub struct Landing {
     pub normal: DVec3,
     /// The body whose surface it is.
     pub body: BodyId,
+    /// Whether it came to opaque matter by refraction alone, or straight.
+    pub is_straight: bool,
 }
 
 /// Light that landed.
@@ -89,6 +91,8 @@ impl Landed {
     ) -> Self {
         let each = paths.div_ceil(BATCHES);
         let share = 1.0 / f64::from(each * BATCHES);
+        // Behind rough glass alone are these met.
+        let keeps_straight = scene.has_rough_glass();
         let batches: Vec<(Vec<Photon>, u64)> = (0..BATCHES)
             .into_par_iter()
             .map(|batch| {
@@ -100,7 +104,10 @@ impl Landed {
                     let sampler = PixelSequence::Sobol.sampler(seed ^ TO_LAND, own, path);
                     let sampler = sampler.on_phase(wavelengths);
                     walk.walk(sampler, &mut tally, &mut ledgers, &mut |part| {
-                        if let Carried::Landed(at) = part.what {
+                        let Carried::Landed(at) = part.what else {
+                            return;
+                        };
+                        if keeps_straight || !at.is_straight {
                             photons.push(Photon { at, flux: part.flux * share, group: part.group });
                         }
                     });
@@ -163,6 +170,8 @@ impl Landed {
 #[derive(Debug)]
 pub struct Photons {
     landed: Landed,
+    /// Where each of them landed, once more and close together: most of them are only looked at for that.
+    places: Vec<DVec3>,
     /// Which of them lie in each cell of a grid; cells are as wide as a disc's radius.
     cells: HashMap<IVec3, Range<usize>>,
     radius: f64,
@@ -176,15 +185,19 @@ impl Photons {
     /// smaller ones in a `crowd`.
     pub fn new(mut landed: Landed, first: f64, shrunk: f64, crowd: Arc<Crowd>) -> Self {
         let radius = (first * shrunk).max(f64::MIN_POSITIVE);
-        landed.photons.sort_by_cached_key(|photon| cell(photon.at.position, radius).to_array());
+        let keyed = landed.photons.par_iter().enumerate();
+        let keyed = keyed.map(|(at, photon)| (cell(photon.at.position, radius).to_array(), at));
+        let mut order: Vec<([i32; 3], usize)> = keyed.collect();
+        order.par_sort_unstable();
+        landed.photons = order.par_iter().map(|(_, at)| landed.photons[*at]).collect();
+        let places = landed.photons.par_iter().map(|photon| photon.at.position).collect();
         let mut cells = HashMap::new();
         let mut first = 0;
-        let at = |photon: &Photon| cell(photon.at.position, radius);
-        for run in landed.photons.chunk_by(|a, b| at(a) == at(b)) {
-            cells.insert(at(&run[0]), first..first + run.len());
+        for run in order.chunk_by(|(a, _), (b, _)| a == b) {
+            cells.insert(IVec3::from(run[0].0), first..first + run.len());
             first += run.len();
         }
-        Self { landed, cells, radius, shrunk, crowd }
+        Self { landed, places, cells, radius, shrunk, crowd }
     }
 
     /// Nothing landed.
@@ -229,11 +242,14 @@ impl Photons {
             let Some(own) = self.cells.get(&middle.wrapping_add(step)) else {
                 continue;
             };
-            for Photon { at, flux, group } in &self.landed.photons[own.clone()] {
-                let d2 = at.position.distance_squared(position) / r2;
-                let off = (at.position - position).dot(normal).abs();
-                let is_same = at.normal.dot(normal).abs() > SAME_SURFACE;
-                if d2 < 1.0 && is_same && off < THICKNESS * radius {
+            for index in own.clone() {
+                let away = self.places[index] - position;
+                let d2 = away.length_squared() / r2;
+                if d2 >= 1.0 || away.dot(normal).abs() >= THICKNESS * radius {
+                    continue;
+                }
+                let Photon { at, flux, group } = &self.landed.photons[index];
+                if at.normal.dot(normal).abs() > SAME_SURFACE {
                     // Most in the middle, none at the rim; 1 over the disc.
                     let per_m2 = 2.0 * (1.0 - d2) / (PI * r2 * M2_PER_MM2);
                     found(at, *flux * per_m2, *group);

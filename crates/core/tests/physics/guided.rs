@@ -326,3 +326,34 @@ fn a_lamp_that_is_walled_in_ends_its_walks() {
     let film = render(&scene, &settings, &Progress::default()).unwrap().film;
     assert!(film.pixels.iter().all(|pixel| pixel.mean() == [0.0; 3]));
 }
+
+#[test]
+fn a_light_smaller_than_a_pixel_is_as_bright_as_it_is_however_its_samples_are_allotted() {
+    // 5 % of a pixel: three of four first rounds miss it, and the pixel gets the more samples the brighter
+    // it seemed.
+    let mut world = World::dark();
+    let lamp = world.add(matt(0.0), disc(DVec3::new(0.3, 0.0, 0.6), DVec3::Y, 0.13));
+    world.shine(lamp, Strength::Flux(flat(1.0)), 1);
+    let projection = Projection::Orthographic { height: 8.0 };
+    let eye = DVec3::new(0.0, 50.0, 0.0);
+    let scene = world.seen_by(Camera::new(eye, DVec3::ZERO, DVec3::Z, projection).unwrap());
+    let guide = learn(&scene, USUAL, 1, 0).ok().map(Arc::new);
+    let mean = |samples: u32, adaptive: bool, seed: u64| {
+        let settings = RenderSettings {
+            width: 8,
+            height: 8,
+            samples: 0..samples,
+            adaptive,
+            seed,
+            guide: guide.clone(),
+            bands_per_lane: 0,
+            ..Take::lit(1, USUAL).settings()
+        };
+        let film = render(&scene, &settings, &Progress::default()).unwrap().film;
+        film.pixels.iter().map(|pixel| pixel.mean()[1]).sum::<f64>() / 64.0
+    };
+    let wanted = mean(1 << 14, false, 1);
+    let few: Vec<f64> = (0..192).map(|seed| mean(24, true, seed) / wanted).collect();
+
+    Estimate::of(few.iter()).is(1.0, 0.15);
+}

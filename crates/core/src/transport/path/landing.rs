@@ -28,15 +28,17 @@ impl PathWalk<'_> {
             receive(arrived, branch.throughput);
             return true;
         };
-        let landed = Carried::Landed(Landing { position, direction, normal, body });
+        let is_straight = !vertex.is_boundary && !branch.has_turned;
+        let landed = Carried::Landed(Landing { position, direction, normal, body, is_straight });
         if vertex.is_boundary {
             if !branch.has_met {
                 receive(landed, branch.throughput);
             }
-        } else if branch.has_turned {
+        } else if branch.has_turned || is_matt {
             receive(landed, branch.throughput);
-        } else if branch.depth > 0 || !is_matt {
-            // Next-event estimation finds by itself what comes straight to a matt surface.
+        }
+        // Next-event estimation finds by itself what comes straight to a matt surface.
+        if is_straight && (branch.depth > 0 || !is_matt) {
             receive(arrived, branch.throughput);
         }
         branch.has_met |= is_matt;
@@ -45,7 +47,8 @@ impl PathWalk<'_> {
 
     /// Take what landed round a vertex. What did not land there is left for the branch to find: what
     /// comes by refraction alone to opaque matter, and what has been on a matt surface before it comes to
-    /// a very rough boundary.
+    /// a very rough boundary. Behind such a boundary the eye takes all that landed on a matt surface:
+    /// what it sees there is blurred by far more than a disc.
     ///
     /// The radiance that a surface sends out is Σ f·E over the irradiances E that arrive from each
     /// direction; what is carried is L/n².
@@ -54,11 +57,9 @@ impl PathWalk<'_> {
         let Some(photons) = self.purpose.photons().filter(|_| !is_done) else {
             return;
         };
-        if vertex.is_boundary {
-            branch.seeks = Seeks::Nothing;
-        } else {
-            (branch.seeks, branch.has_met) = (Seeks::Refracted, true);
-        }
+        let takes_all = branch.is_left() || vertex.is_boundary;
+        branch.seeks = if takes_all { Seeks::Nothing } else { Seeks::Refracted };
+        branch.has_met |= !vertex.is_boundary;
         let sent_on = self.weight(branch.throughput * vertex.albedo());
         let normal = ground.normal;
         let per_n2 = [normal, -normal].map(|side| {
@@ -73,7 +74,7 @@ impl PathWalk<'_> {
         photons.round((vertex.position, normal), ground.body, |landing, irradiance, group| {
             // What landed did so on the true surface, whatever its shading.
             let cos = landing.direction.dot(normal);
-            if cos != 0.0 {
+            if cos != 0.0 && (takes_all || !landing.is_straight) {
                 let carried = per_n2[usize::from(cos < 0.0)];
                 let answer = vertex.answer(landing.direction) * (1.0 / cos.abs());
                 let arriving = carried * answer * irradiance;
