@@ -25,9 +25,9 @@ pub(super) struct Pilot {
 /// What it tells of one film.
 struct Trial {
     /// The standard deviation of one sample's luminance, relative to the pixel's tone, as the
-    /// neighbours have it.
+    /// neighbours have it; the pixel itself, too, where its samples are not kept.
     noise: Vec<f64>,
-    /// Segments that one sample takes, as the neighbours have it.
+    /// Segments that one sample takes, as those have it who decide.
     cost: Vec<f64>,
     /// The fewest samples of a pixel: those that it has, if they are kept.
     least: u32,

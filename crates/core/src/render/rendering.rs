@@ -16,7 +16,7 @@ use crate::scene::{Interior, Scene};
 use crate::transport::{Guide, Ledger, Part, PathSettings, Photons, Tally};
 
 /// Keeps the random numbers of what is set aside and of all others apart.
-const TO_TRY: u64 = 0xA54F_F53A_5F1D_36F1;
+const TO_SET_ASIDE: u64 = 0xA54F_F53A_5F1D_36F1;
 /// The most samples between two looks at the clock.
 const MOST_TIMED: u32 = 8;
 
@@ -83,7 +83,7 @@ impl Rendering<'_> {
         let end = samples.end.min(self.whole(samples.start + pilot_samples));
         let first = samples.start..end;
         for exposure in exposures.iter_mut().filter(|exposure| !exposure.keeps_first_round()) {
-            exposure.seed ^= TO_TRY;
+            exposure.seed ^= TO_SET_ASIDE;
         }
         let rest = self.expose_first(&mut exposures, &mut tally, first);
         let pilot_samples = rest - samples.start;

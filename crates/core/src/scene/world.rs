@@ -137,7 +137,7 @@ impl Scene {
         &self.materials[self.bodies[body as usize].material]
     }
 
-    /// Whether a transparent body has a rough face.
+    /// Whether there is transparent matter with a slightly rough surface.
     pub fn has_slightly_rough_glass(&self) -> bool {
         self.has_glass_of(Finish::is_slightly_rough)
     }

@@ -5,9 +5,9 @@
 //! in just the direction that the lens mirrors into a die. Walks from the lights land there by
 //! themselves. So the two meet: a walk from the eye takes the light that landed within a small disc
 //! round the place where it arrives. Light that came to opaque matter by refraction alone, or straight,
-//! is not met there but behind rough boundaries: walks from the eye find it without any blur.
+//! is met behind very rough boundaries alone: elsewhere walks from the eye find it without any blur.
 //!
-//! Every sample of the pixels has photons of its own, so that samples stay independent, and its discs
+//! Every batch of samples has photons of its own, so that batches are independent, and its discs
 //! are smaller than those before it: the blur goes to nothing, and so does the noise.
 //!
 //! Source: H. Jensen, "Global Illumination using Photon Maps", EGWR 1996; T. Hachisuka and H. Jensen,
@@ -91,7 +91,7 @@ impl Landed {
     ) -> Self {
         let each = paths.div_ceil(BATCHES);
         let share = 1.0 / f64::from(each * BATCHES);
-        // Behind rough glass alone are these met.
+        // These are met behind rough glass alone.
         let keeps_straight = scene.has_rough_glass();
         let batches: Vec<(Vec<Photon>, u64)> = (0..BATCHES)
             .into_par_iter()
@@ -166,7 +166,7 @@ impl Landed {
     }
 }
 
-/// The light that landed for one sample of the pixels.
+/// The light that landed for one batch of samples of the pixels.
 #[derive(Debug)]
 pub struct Photons {
     landed: Landed,

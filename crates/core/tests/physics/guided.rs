@@ -116,6 +116,13 @@ fn frosted(projection: Projection, panes: &[(f64, [f64; 2])]) -> Scene {
     world.seen_by(Camera::new(eye, DVec3::new(0.0, 4.0, 0.0), DVec3::Z, projection).unwrap())
 }
 
+/// The mean luminance of a picture.
+fn mean_luminance(scene: &Scene, settings: RenderSettings) -> f64 {
+    let settings = RenderSettings { bands_per_lane: 0, ..settings };
+    let film = render(scene, &settings, &Progress::default()).unwrap().film;
+    film.pixels.iter().map(|pixel| pixel.mean()[1]).sum::<f64>() / film.pixels.len() as f64
+}
+
 /// The luminance of the blocks of 8 × 8 pixels of a frosted picture, by light group, and of all of it.
 fn blocks(film: &Film) -> Vec<f64> {
     let layer = |pixel: usize, group: usize| film.layer_sums[pixel * film.layers + group].mean()[1];
@@ -292,17 +299,8 @@ fn the_fewest_samples_show_the_light_behind_a_rough_cover_too() {
     // So few that nothing is allotted: all of the light is the eye's then.
     let scene = frosted(Projection::Pinhole { field_of_view_deg: 24.0 }, &[(0.2, [-12.0, 12.0])]);
     let mean = |samples: u32, adaptive: bool, seed: u64| {
-        let settings = RenderSettings {
-            width: 24,
-            height: 16,
-            samples: 0..samples,
-            adaptive,
-            seed,
-            bands_per_lane: 0,
-            ..Take::lit(1, USUAL).settings()
-        };
-        let film = render(&scene, &settings, &Progress::default()).unwrap().film;
-        film.pixels.iter().map(|pixel| pixel.mean()[1]).sum::<f64>() / 384.0
+        let usual = Take::lit(samples, USUAL).settings();
+        mean_luminance(&scene, RenderSettings { width: 24, height: 16, adaptive, seed, ..usual })
     };
     let wanted = mean(256, false, 1);
     let few: Vec<f64> = (0..16).map(|seed| mean(4, true, seed) / wanted).collect();
@@ -338,22 +336,12 @@ fn a_light_smaller_than_a_pixel_is_as_bright_as_it_is_however_its_samples_are_al
     let eye = DVec3::new(0.0, 50.0, 0.0);
     let scene = world.seen_by(Camera::new(eye, DVec3::ZERO, DVec3::Z, projection).unwrap());
     let guide = learn(&scene, USUAL, 1, 0).ok().map(Arc::new);
-    let mean = |samples: u32, adaptive: bool, seed: u64| {
-        let settings = RenderSettings {
-            width: 8,
-            height: 8,
-            samples: 0..samples,
-            adaptive,
-            seed,
-            guide: guide.clone(),
-            bands_per_lane: 0,
-            ..Take::lit(1, USUAL).settings()
-        };
-        let film = render(&scene, &settings, &Progress::default()).unwrap().film;
-        film.pixels.iter().map(|pixel| pixel.mean()[1]).sum::<f64>() / 64.0
-    };
-    let wanted = mean(1 << 14, false, 1);
-    let few: Vec<f64> = (0..192).map(|seed| mean(24, true, seed) / wanted).collect();
-
+    let usual = Take::lit(24, USUAL).settings();
+    let usual = RenderSettings { width: 8, height: 8, adaptive: true, guide, ..usual };
+    // L = Φ/πA, on A of the 64 mm² that are seen.
+    let expected = 1.0 / (PI * 64e-6);
+    let few: Vec<f64> = (0..192)
+        .map(|seed| mean_luminance(&scene, RenderSettings { seed, ..usual.clone() }) / expected)
+        .collect();
     Estimate::of(few.iter()).is(1.0, 0.15);
 }
