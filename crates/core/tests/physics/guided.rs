@@ -137,6 +137,34 @@ fn blocks(film: &Film) -> Vec<f64> {
 }
 
 #[test]
+fn a_wall_that_a_lamp_shines_at_is_as_bright_as_by_path_beside_a_frosted_pane_and_behind_it() {
+    // Through the pane, well away from its edge, where discs are too dark.
+    for height in [-60.0, 60.0] {
+        let mut world = World::dark();
+        let lamp = world.add(matt(0.0), disc(DVec3::ZERO, DVec3::X, 1.0));
+        world.shine(lamp, Strength::Flux(flat(2.0)), 1);
+        world.add(matt(0.6), cuboid(DVec3::new(20.0, -20.0, -20.0), DVec3::new(22.0, 20.0, 20.0)));
+        let pane = cuboid(DVec3::new(2.0, 6.0, -8.0), DVec3::new(19.5, 8.0, 8.0));
+        world.add_rough(glass(1.5), 0.3, pane);
+        let eye = DVec3::new(-20.0, height, 1.0);
+        let projection = Projection::Orthographic { height: 4.0 };
+        let at = DVec3::new(20.0, -4.0, 0.0);
+        let scene = world.seen_by(Camera::new(eye, at, DVec3::Z, projection).unwrap());
+        let by_seeds = |take: Take| {
+            let settings = RenderSettings { width: 32, height: 32, ..take.settings() };
+            let means: Vec<f64> = (1..=8)
+                .map(|seed| mean_luminance(&scene, RenderSettings { seed, ..settings.clone() }))
+                .collect();
+            Estimate::of(means.iter())
+        };
+        let [path, lit] = [Take::of(1 << 8, USUAL), Take::lit(1 << 5, USUAL)].map(by_seeds);
+        let sigma = lit.sigma.hypot(path.sigma);
+        assert!((lit.mean - path.mean).abs() < 3.0 * sigma, "{height}: {lit:?} {path:?}");
+        assert!(sigma < 0.06 * path.mean, "{height}: {lit:?} {path:?}");
+    }
+}
+
+#[test]
 fn light_from_the_lamps_and_light_found_from_the_eye_make_the_picture_that_the_eye_finds() {
     // Behind a very rough pane what has landed is met, in discs of some pixels, which are small beside
     // the blocks; a less rough one is shown to the camera.

@@ -74,7 +74,8 @@ impl PathWalk<'_> {
         photons.round((vertex.position, normal), ground.body, |landing, irradiance, group| {
             // What landed did so on the true surface, whatever its shading.
             let cos = landing.direction.dot(normal);
-            if cos != 0.0 && (takes_all || !landing.is_straight) {
+            let is_met = takes_all || !landing.is_straight;
+            if cos != 0.0 && is_met {
                 let carried = per_n2[usize::from(cos < 0.0)];
                 let answer = vertex.answer(landing.direction) * (1.0 / cos.abs());
                 let arriving = carried * answer * irradiance;
