@@ -22,7 +22,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 #: Modules of this package that register cases, in the order of the page.
-MODULES = ("closed_forms", "photometry", "against_mitsuba")
+MODULES = ("closed_forms", "photometry", "lit_lamps", "against_mitsuba")
 
 #: How many standard errors an estimate may lie from its expected value.
 SIGMAS = 3.0

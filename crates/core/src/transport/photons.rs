@@ -51,8 +51,10 @@ pub struct Landing {
     pub position: DVec3,
     /// The unit vector back to where it came from.
     pub direction: DVec3,
-    /// The surface's normal, on either side.
+    /// The surface's true normal, on either side.
     pub normal: DVec3,
+    /// Its shading normal, on the same side.
+    pub shading: DVec3,
     /// The body whose surface it is.
     pub body: BodyId,
     /// Whether it came to opaque matter by refraction alone, or straight.

@@ -24,12 +24,13 @@ impl PathWalk<'_> {
         };
         let (position, direction, way) = (vertex.position, -branch.ray.direction, branch.way);
         let arrived = Carried::Arrived(Arrival { position, direction, way, weight });
-        let Some(Ground { body, is_matt, normal }) = ground.copied() else {
+        let Some(Ground { body, is_matt, normal, shading }) = ground.copied() else {
             receive(arrived, branch.throughput);
             return true;
         };
         let is_straight = !vertex.is_boundary && !branch.has_turned;
-        let landed = Carried::Landed(Landing { position, direction, normal, body, is_straight });
+        let landing = Landing { position, direction, normal, shading, body, is_straight };
+        let landed = Carried::Landed(landing);
         if vertex.is_boundary {
             if !branch.has_met {
                 receive(landed, branch.throughput);
@@ -72,12 +73,15 @@ impl PathWalk<'_> {
         };
         eye.gathered.met += sent_on;
         photons.round((vertex.position, normal), ground.body, |landing, irradiance, group| {
-            // What landed did so on the true surface, whatever its shading.
-            let cos = landing.direction.dot(normal);
+            // The surface may be curved: seen is how it answers where the light landed. There it did so
+            // on the true surface, whatever its shading.
+            let side = landing.normal.dot(normal).signum();
+            let cos = side * landing.direction.dot(landing.normal);
             let is_met = takes_all || !landing.is_straight;
             if cos != 0.0 && is_met {
                 let carried = per_n2[usize::from(cos < 0.0)];
-                let answer = vertex.answer(landing.direction) * (1.0 / cos.abs());
+                let answer = vertex.answer_turned(side * landing.shading, landing.direction);
+                let answer = answer * (1.0 / cos.abs());
                 let arriving = carried * answer * irradiance;
                 eye.gathered.landed += arriving;
                 eye.gathered.add(scene, wavelengths, group, arriving);

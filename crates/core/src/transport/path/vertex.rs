@@ -29,6 +29,8 @@ pub(super) struct Ground {
     pub is_matt: bool,
     /// The true normal on the side that the branch comes from.
     pub normal: DVec3,
+    /// The shading normal on that side.
+    pub shading: DVec3,
 }
 
 #[expect(clippy::large_enum_variant, reason = "made at every hit: a box would cost an allocation")]
@@ -94,6 +96,17 @@ impl<'a> Vertex<'a> {
         }
     }
 
+    /// The same, were the surface turned so that this is its shading normal.
+    pub fn answer_turned(&self, normal: DVec3, wo: DVec3) -> SampledSpectrum {
+        match &self.place {
+            Place::Surface { frame: own, wi, bsdf, .. } => {
+                let to_turned = frame(normal).transpose();
+                bsdf.eval(to_turned * (*own * *wi), to_turned * wo)
+            }
+            Place::Body { .. } => self.answer(wo),
+        }
+    }
+
     /// The share of the light that goes on, about.
     pub fn albedo(&self) -> SampledSpectrum {
         match &self.place {
@@ -142,12 +155,13 @@ impl<'a> Vertex<'a> {
 
     /// How walks from the eye and from lights meet there.
     pub fn ground(&self) -> Option<Ground> {
-        let Place::Surface { body, true_normal, bsdf, .. } = &self.place else {
+        let Place::Surface { body, true_normal, frame, bsdf, .. } = &self.place else {
             return None;
         };
         let is_matt = bsdf.is_broad() && !self.is_boundary;
         let is_met = if self.is_boundary { bsdf.is_broad() } else { bsdf.spreads() };
-        is_met.then_some(Ground { body: *body, is_matt, normal: *true_normal })
+        let (normal, shading) = (*true_normal, frame.z_axis);
+        is_met.then_some(Ground { body: *body, is_matt, normal, shading })
     }
 
     /// Where a ray along `wo` starts, and in which bodies.
