@@ -29,7 +29,7 @@ _GRID = (np.arange(-90.0, 91.0, 15.0), np.arange(-90.0, 91.0, 15.0))
 _RECEIVER_DEG, _DISTANCE_M = 2.0, 25.0
 _TRIANGLES = 50_000
 #: From the light; and independent pictures, their longer side, and the samples of each.
-_PATHS = 1 << 21
+_PATHS = 1 << 22
 _SEEDS, _PIXELS, _SAMPLES = 8, 64, 32
 
 

@@ -165,7 +165,19 @@ impl World {
         triangles: &[[u32; 3]],
         normals: Option<&[[f64; 3]]>,
     ) -> BodyId {
-        let material = self.material(optics, 0.0);
+        self.add_rough_mesh(optics, 0.0, vertices, triangles, normals)
+    }
+
+    /// A mesh of a material of its own.
+    pub fn add_rough_mesh(
+        &mut self,
+        optics: Optics,
+        alpha: f64,
+        vertices: &[[f64; 3]],
+        triangles: &[[u32; 3]],
+        normals: Option<&[[f64; 3]]>,
+    ) -> BodyId {
+        let material = self.material(optics, alpha);
         let body = Body { name: "mesh".into(), material, priority: 0 };
         self.builder.add_mesh(body, vertices, triangles, normals).unwrap()
     }

@@ -263,6 +263,52 @@ fn light_that_is_mirrored_to_a_glossy_floor_is_met_where_it_lands() {
     assert!(sigma < 0.03 * path.mean, "{lit:?} {path:?}");
 }
 
+/// A part of a paraboloid whose focus is the lamp's image: it sends what the flat mirror sends it straight
+/// up, about, and each place of it by its own normal.
+fn collimator(world: &mut World) {
+    const SIDE: u32 = 40;
+    const FOCUS: f64 = 40.0;
+    const FOCAL_LENGTH: f64 = 65.5;
+    let vertex = |at: u32| {
+        let (x, z) =
+            (28.0 + 0.5 * f64::from(at % (SIDE + 1)), 0.5 * f64::from(at / (SIDE + 1)) - 10.0);
+        [x, FOCUS - FOCAL_LENGTH + (x * x + z * z) / (4.0 * FOCAL_LENGTH), z]
+    };
+    let vertices: Vec<_> = (0..(SIDE + 1).pow(2)).map(vertex).collect();
+    let cell = |at: u32| {
+        let first = at / SIDE * (SIDE + 1) + at % SIDE;
+        let [a, b, c, d] = [first, first + 1, first + SIDE + 1, first + SIDE + 2];
+        [[a, c, b], [b, c, d]]
+    };
+    let triangles: Vec<_> = (0..SIDE * SIDE).flat_map(cell).collect();
+    world.add_rough_mesh(metal(), 0.04, &vertices, &triangles, None);
+}
+
+#[test]
+fn light_that_is_mirrored_to_a_curved_mirror_leaves_it_as_it_is_curved_where_it_landed() {
+    let mut world = World::dark();
+    let lamp = world.add(matt(0.0), disc(DVec3::ZERO, DVec3::Y, 0.5));
+    world.shine(lamp, Strength::Flux(flat(2.0)), 1);
+    world.add(metal(), disc(DVec3::new(0.0, 20.0, 0.0), -DVec3::Y, 24.0));
+    collimator(&mut world);
+    // Its middle, away from its edges, where discs are too dark: they are a quarter of it.
+    let projection = Projection::Orthographic { height: 8.0 };
+    let at = DVec3::new(38.0, -20.0, 0.0);
+    let eye = at + 200.0 * DVec3::Y;
+    let scene = world.seen_by(Camera::new(eye, at, DVec3::Z, projection).unwrap());
+    let by_seeds = |take: Take| {
+        let settings = RenderSettings { width: 4, height: 4, ..take.settings() };
+        let means: Vec<f64> = (1..=8)
+            .map(|seed| mean_luminance(&scene, RenderSettings { seed, ..settings.clone() }))
+            .collect();
+        Estimate::of(means.iter())
+    };
+    let [path, lit] = [Take::of(1 << 12, USUAL), Take::lit(1 << 8, USUAL)].map(by_seeds);
+    let sigma = lit.sigma.hypot(path.sigma);
+    assert!((lit.mean - path.mean).abs() < 3.0 * sigma, "{lit:?} {path:?}");
+    assert!(sigma < 0.02 * path.mean, "{lit:?} {path:?}");
+}
+
 #[test]
 fn errors_of_pixels_are_those_over_seeds_where_samples_share_what_landed() {
     let floor = |world: &mut World| {

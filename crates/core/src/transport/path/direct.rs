@@ -213,12 +213,14 @@ impl<'a> PathWalk<'a> {
         }
     }
 
-    /// How `scatter` aims.
+    /// How `scatter` aims. What is not aimed weighs more by 1/(1 − share) at each turn: so that after many
+    /// scatterings a few walks do not carry all the light, the share halves with each of them.
     fn aims(&self, branch: &Branch, vertex: &Vertex<'_>, lanes: &SampledSpectrum) -> Aims<'a> {
         if !self.purpose.looks_for_light() {
             return Aims { background: 0.0, guided: 0.0, light: None };
         }
-        let background = self.scene.background.aim_share(vertex.position);
+        let share = if vertex.is_in_body() { 0.5_f64.powi(branch.depth as i32) } else { 1.0 };
+        let background = share * self.scene.background.aim_share(vertex.position);
         let guide = self.purpose.guide().filter(|_| !branch.is_left());
         let region = guide.and_then(|guide| guide.at(vertex.position));
         let Some(region) = region else {
@@ -226,8 +228,9 @@ impl<'a> PathWalk<'a> {
         };
         let light = region.answered(vertex.position, |wo| vertex.pdf(wo, lanes));
         // Where both are sure of a half, each of the three ways of drawing has a third.
+        let guided = share * GUIDED;
         let [background, guided] =
-            [(background, GUIDED), (GUIDED, background)].map(|(a, b)| a * (1.0 - b * 2.0 / 3.0));
+            [(background, guided), (guided, background)].map(|(a, b)| a * (1.0 - b * 2.0 / 3.0));
         Aims { background, guided, light: Some(light) }
     }
 
