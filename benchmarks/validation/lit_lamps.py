@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0 OR MIT
 """T7 for pictures: the luminance of a lit lamp, summed over its face, against its candela.
 
-`lit` makes the picture: walks from the eye that know where light comes from and meet what landed. The
-candela are those of walks from the light alone, which share nothing with it but the scene.
+`lit` makes the picture: walks from the eye that know where light comes from and meet what landed.
+The candela are those of walks from the light alone, which share nothing with it but the scene.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _SEEDS, _PIXELS, _SAMPLES = 8, 64, 32
 
 
 def integrated(lamp: str) -> Iterator[Finding]:
-    """Compare I = d² Σ L (n·ω) Ω over a picture's pixels with the candela of walks from the light."""
+    """Compare I = d² Σ L (n·ω) Ω over a picture's pixels with candela by walks from the light."""
     with tempfile.TemporaryDirectory(prefix="lamplit-integrated-") as folder:
         scene = lit_scene(lamp, Path(folder), triangles=_TRIANGLES)
         if scene.measure is None:
