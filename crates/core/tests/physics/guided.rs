@@ -123,6 +123,13 @@ fn mean_luminance(scene: &Scene, settings: RenderSettings) -> f64 {
     film.pixels.iter().map(|pixel| pixel.mean()[1]).sum::<f64>() / film.pixels.len() as f64
 }
 
+/// The mean luminance of square pictures of so many pixels a side, over eight seeds.
+fn mean_over_seeds(scene: &Scene, side: u32, take: Take) -> Estimate {
+    let usual = RenderSettings { width: side, height: side, ..take.settings() };
+    let of_seed = |seed| mean_luminance(scene, RenderSettings { seed, ..usual.clone() });
+    Estimate::of((1..=8).map(of_seed).collect::<Vec<_>>().iter())
+}
+
 /// The luminance of the blocks of 8 × 8 pixels of a frosted picture, by light group, and of all of it.
 fn blocks(film: &Film) -> Vec<f64> {
     let layer = |pixel: usize, group: usize| film.layer_sums[pixel * film.layers + group].mean()[1];
@@ -150,14 +157,8 @@ fn a_wall_that_a_lamp_shines_at_is_as_bright_as_by_path_beside_a_frosted_pane_an
         let projection = Projection::Orthographic { height: 4.0 };
         let at = DVec3::new(20.0, -4.0, 0.0);
         let scene = world.seen_by(Camera::new(eye, at, DVec3::Z, projection).unwrap());
-        let by_seeds = |take: Take| {
-            let settings = RenderSettings { width: 32, height: 32, ..take.settings() };
-            let means: Vec<f64> = (1..=8)
-                .map(|seed| mean_luminance(&scene, RenderSettings { seed, ..settings.clone() }))
-                .collect();
-            Estimate::of(means.iter())
-        };
-        let [path, lit] = [Take::of(1 << 8, USUAL), Take::lit(1 << 5, USUAL)].map(by_seeds);
+        let [path, lit] = [Take::of(1 << 8, USUAL), Take::lit(1 << 5, USUAL)]
+            .map(|take| mean_over_seeds(&scene, 32, take));
         let sigma = lit.sigma.hypot(path.sigma);
         assert!((lit.mean - path.mean).abs() < 3.0 * sigma, "{height}: {lit:?} {path:?}");
         assert!(sigma < 0.06 * path.mean, "{height}: {lit:?} {path:?}");
@@ -296,14 +297,8 @@ fn light_that_is_mirrored_to_a_curved_mirror_leaves_it_as_it_is_curved_where_it_
     let at = DVec3::new(38.0, -20.0, 0.0);
     let eye = at + 200.0 * DVec3::Y;
     let scene = world.seen_by(Camera::new(eye, at, DVec3::Z, projection).unwrap());
-    let by_seeds = |take: Take| {
-        let settings = RenderSettings { width: 4, height: 4, ..take.settings() };
-        let means: Vec<f64> = (1..=8)
-            .map(|seed| mean_luminance(&scene, RenderSettings { seed, ..settings.clone() }))
-            .collect();
-        Estimate::of(means.iter())
-    };
-    let [path, lit] = [Take::of(1 << 12, USUAL), Take::lit(1 << 8, USUAL)].map(by_seeds);
+    let [path, lit] = [Take::of(1 << 12, USUAL), Take::lit(1 << 8, USUAL)]
+        .map(|take| mean_over_seeds(&scene, 4, take));
     let sigma = lit.sigma.hypot(path.sigma);
     assert!((lit.mean - path.mean).abs() < 3.0 * sigma, "{lit:?} {path:?}");
     assert!(sigma < 0.02 * path.mean, "{lit:?} {path:?}");

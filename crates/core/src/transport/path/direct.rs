@@ -214,7 +214,7 @@ impl<'a> PathWalk<'a> {
     }
 
     /// How `scatter` aims. What is not aimed weighs more by 1/(1 − share) at each turn: so that after many
-    /// scatterings a few walks do not carry all the light, the share halves with each of them.
+    /// scatterings a few walks do not carry all the light, the share there halves with each event before.
     fn aims(&self, branch: &Branch, vertex: &Vertex<'_>, lanes: &SampledSpectrum) -> Aims<'a> {
         if !self.purpose.looks_for_light() {
             return Aims { background: 0.0, guided: 0.0, light: None };
