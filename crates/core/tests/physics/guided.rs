@@ -124,7 +124,7 @@ fn mean_luminance(scene: &Scene, settings: RenderSettings) -> f64 {
 }
 
 /// The mean luminance of square pictures of so many pixels a side, over eight seeds.
-fn mean_over_seeds(scene: &Scene, side: u32, take: Take) -> Estimate {
+fn mean_over_seeds(scene: &Scene, side: u32, take: &Take) -> Estimate {
     let usual = RenderSettings { width: side, height: side, ..take.settings() };
     let of_seed = |seed| mean_luminance(scene, RenderSettings { seed, ..usual.clone() });
     Estimate::of((1..=8).map(of_seed).collect::<Vec<_>>().iter())
@@ -158,7 +158,7 @@ fn a_wall_that_a_lamp_shines_at_is_as_bright_as_by_path_beside_a_frosted_pane_an
         let at = DVec3::new(20.0, -4.0, 0.0);
         let scene = world.seen_by(Camera::new(eye, at, DVec3::Z, projection).unwrap());
         let [path, lit] = [Take::of(1 << 8, USUAL), Take::lit(1 << 5, USUAL)]
-            .map(|take| mean_over_seeds(&scene, 32, take));
+            .map(|take| mean_over_seeds(&scene, 32, &take));
         let sigma = lit.sigma.hypot(path.sigma);
         assert!((lit.mean - path.mean).abs() < 3.0 * sigma, "{height}: {lit:?} {path:?}");
         assert!(sigma < 0.06 * path.mean, "{height}: {lit:?} {path:?}");
@@ -298,7 +298,7 @@ fn light_that_is_mirrored_to_a_curved_mirror_leaves_it_as_it_is_curved_where_it_
     let eye = at + 200.0 * DVec3::Y;
     let scene = world.seen_by(Camera::new(eye, at, DVec3::Z, projection).unwrap());
     let [path, lit] = [Take::of(1 << 12, USUAL), Take::lit(1 << 8, USUAL)]
-        .map(|take| mean_over_seeds(&scene, 4, take));
+        .map(|take| mean_over_seeds(&scene, 4, &take));
     let sigma = lit.sigma.hypot(path.sigma);
     assert!((lit.mean - path.mean).abs() < 3.0 * sigma, "{lit:?} {path:?}");
     assert!(sigma < 0.02 * path.mean, "{lit:?} {path:?}");
