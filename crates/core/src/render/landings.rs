@@ -15,7 +15,7 @@ use super::Progress;
 /// Keeps the random numbers of phases apart from all others.
 const TO_CHOOSE: u64 = 0xBB67_AE85_84CA_A73B;
 /// Walks from lights for each time that a walk from the eye meets what landed.
-const PER_MEETING: f64 = 3.0;
+const PER_MEETING: f64 = 2.0;
 /// About how much may land at once: a bound to the memory.
 const MOST_LANDED: f64 = 262_144.0;
 /// The first samples each have walks of their own; later ones share what landed, as many as memory lets, but

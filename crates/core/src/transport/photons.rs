@@ -59,6 +59,8 @@ pub struct Landing {
     pub body: BodyId,
     /// Whether it came to opaque matter by refraction alone, or straight.
     pub is_straight: bool,
+    /// Σ 1/f, in sr, of the ground behind it where walks from the eye may meet it, too.
+    pub rivals: f64,
 }
 
 /// Light that landed.

@@ -29,11 +29,15 @@ pub(super) struct Branch {
     pub has_scattered: bool,
     /// Which of the emitters that it meets count.
     pub seeks: Seeks,
-    /// Whether it has met light that landed, on a surface of opaque matter; a walk from a light: whether it
-    /// has been on a matt one.
+    /// Whether it has met light that landed; a walk from a light: whether it has been on a matt surface.
     pub has_met: bool,
     /// Whether it has been reflected or turned at random since it started.
     pub has_turned: bool,
+    /// Σ 1/f, in sr, of the ground behind it where the light on its way can be met, too: 0 where none is, or
+    /// more than refraction lies between.
+    pub rivals: f64,
+    /// Its share in the light of emitters that it meets.
+    pub share: f64,
     /// How it got its direction.
     pub came_by: CameBy,
     /// How much more light may come against `ray` than its throughput makes one expect: it was aimed
@@ -99,6 +103,8 @@ impl Branch {
             seeks: Seeks::All,
             has_met: false,
             has_turned: false,
+            rivals: 0.0,
+            share: 1.0,
             came_by,
             promise: 1.0,
         }

@@ -85,7 +85,7 @@ impl<'a> PathWalk<'a> {
                 pdf / (pdf + other)
             }
         };
-        self.add_light(emitter.group, branch.throughput * emitted * weight);
+        self.add_light(emitter.group, branch.throughput * emitted * (weight * branch.share));
     }
 
     fn add_light(&mut self, group: usize, arriving: SampledSpectrum) {
@@ -101,25 +101,24 @@ impl<'a> PathWalk<'a> {
             return false;
         }
         let lanes = self.lanes(branch.throughput);
-        if !self.widens(branch) {
+        let ground = vertex.ground();
+        let meets_again = branch.rivals > 0.0 && ground.is_some();
+        if !meets_again && !self.widens(branch) {
             return false;
         }
         let was_left = self.all_is_left(branch);
-        let ground = vertex.ground();
         if !self.land(branch, vertex, ground.as_ref()) {
             return false;
         }
-        if let Some(ground) = &ground {
-            self.meet(branch, vertex, ground);
-        }
+        let is_met = ground.as_ref().is_some_and(|ground| match self.purpose {
+            Purpose::Eye(_) => self.meet(branch, vertex, ground),
+            Purpose::Light(..) => true,
+        });
         branch.has_turned = true;
         // Where light is met, it is not shown.
         let is_shown = vertex.is_boundary && ground.is_none();
         if branch.depth == 0 && is_shown && self.purpose.leaves_rough() {
             branch.seeks = Seeks::Nothing;
-        }
-        if !was_left && self.all_is_left(branch) && !self.survives_unseen(branch) {
-            return false;
         }
         if is_shown {
             self.show(branch, vertex);
@@ -148,7 +147,14 @@ impl<'a> PathWalk<'a> {
         branch.has_scattered = true;
         branch.came_by = CameBy::Scattering { from: vertex.position, pdf };
         branch.promise = (pdf / own).min(pdf * 4.0 * PI).max(1.0);
-        branch.throughput *= vertex.answer(wo) * (1.0 / pdf);
+        let answer = vertex.answer(wo);
+        branch.throughput *= answer * (1.0 / pdf);
+        if is_met {
+            self.leave_ground(branch, vertex, wo, answer);
+        }
+        if !was_left && self.all_is_left(branch) && !self.survives_unseen(branch) {
+            return false;
+        }
         if !vertex.agrees(wo) {
             wo = vertex.put_right(wo);
             branch.came_by = CameBy::OneWay;
@@ -161,17 +167,20 @@ impl<'a> PathWalk<'a> {
 
     /// Whether all that a branch meets of emitters is left to walks from lights.
     fn all_is_left(&self, branch: &Branch) -> bool {
-        branch.is_left() && (branch.has_met || self.purpose.photons().is_none())
+        branch.is_left()
+            && branch.rivals <= 0.0
+            && (branch.has_met || self.purpose.photons().is_none())
     }
 
     /// Whether a branch goes on that is reflected or turned at random: a narrow one leaves emitters to
     /// others from there on.
     pub(super) fn widens(&self, branch: &mut Branch) -> bool {
-        if branch.seeks != Seeks::Refracted {
-            return true;
+        let was_left = self.all_is_left(branch);
+        branch.rivals = 0.0;
+        if branch.seeks == Seeks::Refracted {
+            branch.seeks = Seeks::Nothing;
         }
-        branch.seeks = Seeks::Nothing;
-        self.survives_unseen(branch)
+        was_left || !self.all_is_left(branch) || self.survives_unseen(branch)
     }
 
     /// Whether a branch goes on whose emitters are left to others. Under a dark background it brings no
@@ -278,7 +287,8 @@ impl<'a> PathWalk<'a> {
         let own = vertex.pdf(seen.direction, lanes);
         let other = self.mixed(vertex, seen.direction, own, aims);
         let arriving = branch.throughput * answer * transmitted * emitted;
-        self.add_light(emitter.group, arriving * (1.0 / (seen.pdf + other)));
+        let share = self.share_of_straight(branch, vertex, seen.direction, answer);
+        self.add_light(emitter.group, arriving * (share / (seen.pdf + other)));
     }
 
     /// The transmittance of the straight way to a point, on the surface of the body `end` or on none, and

@@ -158,6 +158,14 @@ impl<'a> Vertex<'a> {
         }
     }
 
+    /// |cos| of the angle of `wo` to the true surface.
+    pub fn cosine(&self, wo: DVec3) -> f64 {
+        match &self.place {
+            Place::Surface { true_normal, .. } => wo.dot(*true_normal).abs(),
+            Place::Body { .. } => 1.0,
+        }
+    }
+
     /// How walks from the eye and from lights meet there.
     pub fn ground(&self) -> Option<Ground> {
         let Place::Surface { body, true_normal, frame, bsdf, .. } = &self.place else {
