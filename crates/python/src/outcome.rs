@@ -100,7 +100,7 @@ impl Render {
     }
 
     /// The parts of the mean luminance in cd/m², by how they were found: `by_eye`; or `specular`,
-    /// `scattered` and `shown_by_lights`.
+    /// `scattered` and `landed`.
     fn found<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let parts = PyDict::new(py);
         for (how, luminance) in &self.rendered.found {
@@ -109,7 +109,6 @@ impl Render {
                 Found::Specular => "specular",
                 Found::Scattered => "scattered",
                 Found::Landed => "landed",
-                Found::ShownByLights => "shown_by_lights",
             };
             parts.set_item(name, luminance)?;
         }

@@ -48,11 +48,6 @@ impl Finish {
         self.table.is_some()
     }
 
-    /// Whether some face is rough, but not so much that light from anywhere goes on about everywhere.
-    pub fn is_slightly_rough(&self) -> bool {
-        self.table.as_ref().is_some_and(|table| !table.is_broad())
-    }
-
     /// The α of a face by its outward geometric normal; 0 where it is smooth.
     pub fn alpha_at(&self, normal: DVec3) -> f64 {
         self.table_at(normal).map_or(0.0, AlbedoTable::alpha)

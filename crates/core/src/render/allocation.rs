@@ -9,16 +9,12 @@
 //! Neighbours do not see a light of one pixel's size. A film whose samples are cheap has its first round
 //! set aside, and other samples make the picture: there, each pixel decides with its neighbours.
 
-use super::light_film::LightTrial;
 use crate::film::{Film, PixelSums};
 use crate::sampling::PixelSequence;
 
 /// What a first round of samples tells of every pixel, on each of the films whose sum is the picture.
 pub(super) struct Pilot {
     films: Vec<Trial>,
-    /// The tone of every pixel: its luminance, held off black and within bounds.
-    pub tone: Vec<f64>,
-    light: Option<LightTrial>,
     width: usize,
 }
 
@@ -116,12 +112,7 @@ impl Pilot {
         let mut films: Vec<Trial> =
             rounds.iter().map(|round| Trial::of(round, &tone, &own_tone)).collect();
         hold(&mut films, width);
-        Self { films, tone, light: None, width }
-    }
-
-    /// Share what there is with walks from lights, too.
-    pub fn share_with(&mut self, light: LightTrial) {
-        self.light = Some(light).filter(|light| light.variance > 0.0);
+        Self { films, width }
     }
 
     /// The samples, on each film, that bring the root mean square of the relative errors to `target`,
@@ -129,21 +120,14 @@ impl Pilot {
     ///
     /// The sum of squares Σ sᵢ²/nᵢ at the cost Σ nᵢ·cᵢ is least for nᵢ ∝ sᵢ/√cᵢ (Neyman), over the
     /// pixels of all films: so the films share what there is.
-    /// To them come the paths of walks from lights.
-    pub fn allocate(&self, mean_samples: f64, target: Option<f64>) -> (Vec<Allocation>, f64) {
+    pub fn allocate(&self, mean_samples: f64, target: Option<f64>) -> Vec<Allocation> {
         let scales = [0, 1].map(|colour| self.scale(colour, mean_samples, target));
         let counts = |trial: &Trial| {
             let pixels = 0..trial.noise.len();
             pixels.map(|at| trial.count(at, scales[colour(at, self.width)])).collect()
         };
         let allocations = self.films.iter().map(|trial| Allocation { counts: counts(trial) });
-        let paths = self.light_paths(0.5 * (scales[0] + scales[1]));
-        (allocations.collect(), paths)
-    }
-
-    /// How many walks from lights there are at a scale.
-    fn light_paths(&self, scale: f64) -> f64 {
-        self.light.as_ref().map_or(0.0, |light| scale * (light.variance / light.cost).sqrt())
+        allocations.collect()
     }
 
     /// The scale of the samples for the pixels of one colour.
@@ -155,12 +139,6 @@ impl Pilot {
         let affordable: f64 = pixels().map(|(trial, at)| left(trial) * trial.cost[at]).sum();
         let suffices = |scale: f64| {
             let (mut cost, mut squares) = (0.0, 0.0);
-            if let Some(light) = &self.light {
-                // Each colour has half of the pixels that these walks serve.
-                let paths = self.light_paths(scale);
-                cost += 0.5 * paths * light.cost;
-                squares += 0.5 * light.variance / paths;
-            }
             for (trial, at) in pixels() {
                 let count = f64::from(trial.count(at, scale));
                 cost += count * trial.cost[at];
@@ -345,7 +323,7 @@ mod tests {
         loud.segments[own] = 1000;
         for target in [None, Some(0.01)] {
             let [quiet, loud] =
-                [&quiet, &loud].map(|film| pilot(film).allocate(64.0, target).0.remove(0));
+                [&quiet, &loud].map(|film| pilot(film).allocate(64.0, target).remove(0));
             assert_eq!(quiet.of(own), loud.of(own), "{target:?}");
             assert_ne!(quiet.of(at(5, 6)), loud.of(at(5, 6)), "{target:?}");
         }
@@ -356,7 +334,7 @@ mod tests {
         let of = |kept: &Film, set_aside: &Film| {
             let rounds = [(kept, true), (set_aside, false)];
             let pilot = Pilot::of(&rounds.map(|(film, is_kept)| FirstRound { film, is_kept }));
-            let (counts, _) = pilot.allocate(64.0, None);
+            let counts = pilot.allocate(64.0, None);
             [counts[0].of(at(5, 5)), counts[1].of(at(5, 5))]
         };
         let quiet = film(|_, _| 0.1);
@@ -379,7 +357,7 @@ mod tests {
     #[test]
     fn counts_follow_the_noise_round_a_pixel_and_spend_what_there_is() {
         let film = film(|column, _| if column < 6 { 0.3 } else { 0.1 });
-        let allocation = pilot(&film).allocate(200.0, None).0.remove(0);
+        let allocation = pilot(&film).allocate(200.0, None).remove(0);
         let ratio = f64::from(allocation.of(at(2, 6))) / f64::from(allocation.of(at(9, 6)));
         assert!((ratio - 3.0).abs() < 0.05, "{ratio}");
         let mean = allocation.total() as f64 / f64::from(SIZE * SIZE);
@@ -388,7 +366,7 @@ mod tests {
 
     #[test]
     fn a_target_takes_no_more_samples_than_it_needs() {
-        let allocation = pilot(&film(|_, _| 0.5)).allocate(1e5, Some(0.01)).0.remove(0);
+        let allocation = pilot(&film(|_, _| 0.5)).allocate(1e5, Some(0.01)).remove(0);
         // Relative to a tone of 1.01: (0.5/1.01/0.01)² samples.
         let expected = (0.5_f64 / 1.01 / 0.01).powi(2).ceil() as u32;
         assert!(allocation.counts.iter().all(|count| count.abs_diff(expected) <= 1));
@@ -400,30 +378,15 @@ mod tests {
         for (pixel, segments) in film.segments.iter_mut().enumerate() {
             *segments = if pixel % (SIZE as usize) < 6 { 64 } else { 16 };
         }
-        let allocation = pilot(&film).allocate(1000.0, None).0.remove(0);
+        let allocation = pilot(&film).allocate(1000.0, None).remove(0);
         let ratio = f64::from(allocation.of(at(9, 6))) / f64::from(allocation.of(at(2, 6)));
         assert!((ratio - 2.0).abs() < 0.01, "{ratio}");
-    }
-
-    #[test]
-    fn walks_from_lights_share_by_their_noise_and_cost() {
-        // As noisy as all pixels together, and four times as dear: half as many.
-        let film = film(|_, _| 0.2);
-        let mut pilot = pilot(&film);
-        let pixels = f64::from(SIZE * SIZE);
-        let variance = pixels * (0.2_f64 / 1.01).powi(2);
-        pilot.share_with(LightTrial { variance, cost: 4.0 });
-        let (allocations, paths) = pilot.allocate(1e4, None);
-        let each = f64::from(allocations[0].of(at(5, 5)));
-        assert!((paths / (each * pixels.sqrt()) - 0.5).abs() < 0.01, "{paths} {each}");
-        let spent = allocations[0].total() as f64 + 4.0 * paths;
-        assert!((spent / (1e4 * pixels) - 1.0).abs() < 0.01, "{spent}");
     }
 
     #[test]
     fn a_black_picture_takes_the_least() {
         let mut film = Film::new(2, 2, 0, 0);
         film.pixels.iter_mut().for_each(|pixel| (0..16).for_each(|_| pixel.add([0.0; 3])));
-        assert_eq!(pilot(&film).allocate(1000.0, Some(0.01)).0[0].total(), 4 * 16);
+        assert_eq!(pilot(&film).allocate(1000.0, Some(0.01))[0].total(), 4 * 16);
     }
 }

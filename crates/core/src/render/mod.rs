@@ -5,7 +5,6 @@ mod allocation;
 mod features;
 mod landings;
 mod learning;
-mod light_film;
 mod pass;
 mod photometer;
 mod rendering;
@@ -22,7 +21,6 @@ use crate::film::Film;
 use crate::scene::{Interior, Scene};
 use crate::transport::{LightSource, Shining, Tally};
 use landings::Landings;
-use light_film::LightFilm;
 use rendering::Rendering;
 use trial::Trial;
 
@@ -116,8 +114,6 @@ pub fn render(
         let began = Instant::now();
         let guide = learning::guide(scene, settings, progress);
         let (guide, source) = (guide.as_deref(), LightSource::from(Shining::of(scene)));
-        let shown = light_film(scene, &source, settings);
-        let leaves_rough = shown.is_some();
         let trial = Trial { scene, settings, interior };
         let (landings, sharp) = match settings.method {
             Method::Lit(path) => {
@@ -126,35 +122,10 @@ pub fn render(
             }
             Method::Hall(_) | Method::Path(_) => (None, None),
         };
-        let rendering = Rendering {
-            scene,
-            settings,
-            interior,
-            guide,
-            sharp,
-            leaves_rough,
-            landings,
-            progress,
-            began,
-        };
-        Ok(rendering.run(shown))
+        let rendering =
+            Rendering { scene, settings, interior, guide, sharp, landings, progress, began };
+        Ok(rendering.run())
     })
-}
-
-/// The film of walks from lights, where these have a part: in a picture without spectra whose samples
-/// are allotted, if something rough and transparent is there.
-fn light_film<'a>(
-    scene: &'a Scene,
-    source: &'a LightSource,
-    settings: &'a RenderSettings,
-) -> Option<LightFilm<'a>> {
-    let Method::Lit(path) = settings.method else {
-        return None;
-    };
-    let is_for_it = settings.first_round().is_some()
-        && settings.bands_per_lane == 0
-        && scene.has_slightly_rough_glass();
-    is_for_it.then(|| LightFilm::new(scene, source, path, settings).ok()).flatten()
 }
 
 /// The bodies that the eye is in.

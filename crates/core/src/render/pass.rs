@@ -31,8 +31,6 @@ pub(super) struct Pass<'a> {
     pub seed: u64,
     /// How many samples each pixel takes in all, where that is not the same.
     pub limit: Option<&'a Allocation>,
-    /// Whether walks from lights show what they send through rough boundaries.
-    pub leaves_rough: bool,
     /// Where light comes from, for walks that know.
     pub guide: Option<&'a Guide>,
     /// What landed on surfaces for these samples, which are one batch then.
@@ -164,9 +162,9 @@ impl Pass<'_> {
                     HallWalk::radiance(scene, hall, wavelengths, sampler, tally, start);
             }
             Method::Path(path) | Method::Lit(path) => {
-                let Self { part, guide, leaves_rough, photons, .. } = *self;
+                let Self { part, guide, photons, .. } = *self;
                 let path = self.sharp.filter(|_| part == Part::Specular).unwrap_or(path);
-                let eye = Eye { gathered, part, guide, leaves_rough, photons };
+                let eye = Eye { gathered, part, guide, photons };
                 PathWalk::gather(scene, path, wavelengths, sampler, tally, eye, start);
             }
         }

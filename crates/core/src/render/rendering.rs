@@ -7,9 +7,9 @@ use std::time::{Duration, Instant};
 
 use super::allocation::{Allocation, FirstRound, Pilot};
 use super::landings::Landings;
-use super::light_film::LightFilm;
 use super::pass::Pass;
 use super::settings::RenderSettings;
+use super::snapshot::Snapshot;
 use super::{Progress, Rendered};
 use crate::film::Film;
 use crate::scene::{Interior, Scene};
@@ -28,8 +28,6 @@ pub(super) struct Rendering<'a> {
     pub guide: Option<&'a Guide>,
     /// How walks for sharp light are spent, where that is apart.
     pub sharp: Option<PathSettings>,
-    /// Whether walks from lights show what they send through rough boundaries.
-    pub leaves_rough: bool,
     /// What lands on surfaces, for the scattered part.
     pub landings: Option<Landings<'a>>,
     pub progress: &'a Progress,
@@ -62,7 +60,7 @@ impl Exposure {
 
 impl Rendering<'_> {
     /// Expose all films, and add them up.
-    pub fn run(&self, shown: Option<LightFilm<'_>>) -> Rendered {
+    pub fn run(&self) -> Rendered {
         let samples = self.settings.samples.clone();
         let parts = self.settings.parts().iter();
         let mut exposures: Vec<Exposure> = parts.map(|part| self.new_exposure(*part)).collect();
@@ -71,12 +69,12 @@ impl Rendering<'_> {
             for exposure in &mut exposures {
                 exposure.limit = Some(Allocation::given(counts.clone()));
             }
-            self.expose(&mut exposures, &mut tally, samples.start..u32::MAX, None, None);
-            return Rendered::of(exposures, None, tally);
+            self.expose(&mut exposures, &mut tally, samples.start..u32::MAX, None);
+            return Rendered::of(exposures, tally);
         }
         let Some(pilot_samples) = self.settings.first_round() else {
-            self.expose(&mut exposures, &mut tally, samples, self.settings.time_budget, None);
-            return Rendered::of(exposures, None, tally);
+            self.expose(&mut exposures, &mut tally, samples, self.settings.time_budget);
+            return Rendered::of(exposures, tally);
         };
         let eyes = Instant::now();
         // What one batch is has one error: rounds do not part it.
@@ -87,18 +85,13 @@ impl Rendering<'_> {
         }
         let rest = self.expose_first(&mut exposures, &mut tally, first);
         let pilot_samples = rest - samples.start;
-        let mut shown = shown;
         if !self.progress.is_cancelled() {
             let affordable = self.affordable(pilot_samples, eyes.elapsed());
-            let paths = self.allocate(&mut exposures, shown.as_mut(), affordable);
-            if let Some(shown) = &mut shown {
-                shown.begin_anew();
-                shown.walk(LightFilm::per_batch(paths), self.progress);
-            }
+            self.allocate(&mut exposures, affordable);
             self.begin_anew(&mut exposures, &mut tally, samples.start..rest);
-            self.expose(&mut exposures, &mut tally, rest..u32::MAX, None, shown.as_ref());
+            self.expose(&mut exposures, &mut tally, rest..u32::MAX, None);
         }
-        Rendered::of(exposures, shown, tally)
+        Rendered::of(exposures, tally)
     }
 
     fn new_exposure(&self, part: Part) -> Exposure {
@@ -129,11 +122,11 @@ impl Rendering<'_> {
     ) -> u32 {
         // No spread is known of fewer than two.
         let second = samples.end.min(samples.start + 2);
-        self.expose(exposures, tally, samples.start..second, None, None);
+        self.expose(exposures, tally, samples.start..second, None);
         let quarter = self.settings.time_budget.map(|budget| {
             (budget / 4).saturating_sub(self.began.elapsed()).max(Duration::from_nanos(1))
         });
-        self.expose(exposures, tally, second..samples.end, quarter, None).max(second)
+        self.expose(exposures, tally, second..samples.end, quarter).max(second)
     }
 
     /// How many samples of every pixel can be had, if those of the first round took so long.
@@ -146,32 +139,14 @@ impl Rendering<'_> {
         })
     }
 
-    /// Allot samples, or time, as the first round says; how many walks from lights there are to be.
-    fn allocate(
-        &self,
-        exposures: &mut [Exposure],
-        shown: Option<&mut LightFilm<'_>>,
-        affordable: f64,
-    ) -> f64 {
+    /// Allot samples, or time, as the first round says.
+    fn allocate(&self, exposures: &mut [Exposure], affordable: f64) {
         let rounds: Vec<FirstRound<'_>> = exposures.iter().map(Exposure::first_round).collect();
-        let mut pilot = Pilot::of(&rounds);
-        if let Some(shown) = shown {
-            let segments = rounds.iter().flat_map(|round| &round.film.segments).sum::<u64>();
-            shown.walk(LightFilm::FEWEST, self.progress);
-            // Light that is walled in where it starts takes no segments at all.
-            let is_short = |shown: &LightFilm<'_>| {
-                shown.segments() < segments / 4 && shown.paths() < LightFilm::MOST_OF_TRIAL
-            };
-            while is_short(shown) && !self.progress.is_cancelled() {
-                shown.walk(shown.paths(), self.progress);
-            }
-            pilot.share_with(shown.trial(&pilot.tone));
-        }
-        let (allocations, paths) = pilot.allocate(affordable, self.settings.target_error);
+        let pilot = Pilot::of(&rounds);
+        let allocations = pilot.allocate(affordable, self.settings.target_error);
         for (exposure, allocation) in exposures.iter_mut().zip(allocations) {
             exposure.limit = Some(allocation);
         }
-        paths
     }
 
     /// Whether what was allotted takes more time than there is: how long it takes is only an estimate.
@@ -191,7 +166,6 @@ impl Rendering<'_> {
         tally: &mut Tally,
         samples: Range<u32>,
         time_budget: Option<Duration>,
-        shown: Option<&LightFilm<'_>>,
     ) -> u32 {
         let started = Instant::now();
         let most = |exposure: &Exposure| {
@@ -218,7 +192,7 @@ impl Rendering<'_> {
                 tally.add(&self.expose_part(exposure, next..until));
             }
             next = until;
-            self.progress.viewfinder.show(|| self.snapshot(exposures, shown, each));
+            self.progress.viewfinder.show(|| Snapshot::so_far(exposures, each));
             length = self.progress.viewfinder.next_length(length, pass_started.elapsed());
             if self.settings.time_budget.is_some() {
                 // So that it is seen when the time is over.
@@ -253,7 +227,7 @@ impl Rendering<'_> {
 
     /// Take samples of one part of the light.
     fn expose_part(&self, exposure: &mut Exposure, samples: Range<u32>) -> Tally {
-        let Self { scene, settings, interior, guide, sharp, leaves_rough, progress, .. } = *self;
+        let Self { scene, settings, interior, guide, sharp, progress, .. } = *self;
         let Exposure { part, film, seed, limit, .. } = exposure;
         let (part, seed, limit) = (*part, *seed, limit.as_ref());
         let mut run = |samples: Range<u32>, photons: Option<&Photons>| {
@@ -266,7 +240,6 @@ impl Rendering<'_> {
                 samples,
                 seed,
                 limit,
-                leaves_rough,
                 guide,
                 photons,
                 progress,
@@ -305,8 +278,7 @@ impl Rendering<'_> {
 
 impl Rendered {
     /// The sum of all parts.
-    fn of(exposures: Vec<Exposure>, shown: Option<LightFilm<'_>>, mut tally: Tally) -> Self {
-        let layers = exposures[0].film.layers;
+    fn of(exposures: Vec<Exposure>, tally: Tally) -> Self {
         let mut found = Vec::new();
         let mut films = Vec::new();
         for Exposure { part, film, .. } in exposures {
@@ -316,12 +288,6 @@ impl Rendered {
                 found.push((Found::Landed, landed));
             }
             films.push(film);
-        }
-        if let Some(shown) = shown {
-            let film = shown.film(layers);
-            found.push((Found::ShownByLights, mean_luminance(&film)));
-            films.push(film);
-            tally.eye_rays += shown.segments();
         }
         Self { film: Film::sum(films), tally, found }
     }
@@ -338,8 +304,6 @@ pub enum Found {
     Scattered,
     /// By walks from lights, which landed where walks from the eye met them.
     Landed,
-    /// By walks from lights, which show it to the camera.
-    ShownByLights,
 }
 
 impl Found {

@@ -123,31 +123,3 @@ impl RenderSettings {
         Film::new(self.width, self.height, self.bands_per_lane, layers)
     }
 }
-
-#[cfg(test)]
-pub(super) mod tests {
-    use super::*;
-
-    /// Settings of no account, but for the size and the filter.
-    pub fn of_size(width: u32, height: u32, filter: PixelFilter) -> RenderSettings {
-        let path = PathSettings { max_depth: 8, split_depth: 1, roulette_below: 0.1 };
-        RenderSettings {
-            width,
-            height,
-            samples: 0..1,
-            counts: None,
-            adaptive: false,
-            target_error: None,
-            time_budget: None,
-            sequence: PixelSequence::Sobol,
-            filter,
-            seed: 1,
-            method: Method::Lit(path),
-            guide: None,
-            bands_per_lane: 0,
-            layers: false,
-            threads: 1,
-            tile: 1,
-        }
-    }
-}

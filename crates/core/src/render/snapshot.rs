@@ -5,8 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-use super::light_film::LightFilm;
-use super::rendering::{Exposure, Rendering};
+use super::rendering::Exposure;
 use crate::film::Film;
 
 /// The most samples that a pixel takes before the next pixel has its turn.
@@ -52,6 +51,19 @@ pub(super) struct PartInMaking<'a> {
 }
 
 impl Snapshot {
+    /// The picture so far, of which every pixel has `each` samples at the end, unless its exposure says
+    /// how many.
+    pub(super) fn so_far(exposures: &[Exposure], each: Option<u32>) -> Self {
+        let eyes = exposures.iter().map(|Exposure { film, limit, .. }| {
+            let counts = limit
+                .as_ref()
+                .map(|limit| Box::new(|at| limit.of(at)) as Box<dyn Fn(usize) -> u32>);
+            let even = || each.map(|each| Box::new(move |_| each) as Box<dyn Fn(usize) -> u32>);
+            PartInMaking { film, at_end: counts.or_else(even) }
+        });
+        Self::of(&eyes.collect::<Vec<_>>())
+    }
+
     /// What the sum of `parts` shows now.
     fn of(parts: &[PartInMaking<'_>]) -> Self {
         let film = parts[0].film;
@@ -82,37 +94,6 @@ impl Snapshot {
         outlook.done = if all > 0.0 { done / all } else { 0.0 };
         shown.outlook = is_counted.then_some(outlook);
         shown
-    }
-}
-
-impl Rendering<'_> {
-    /// The picture so far, of which every pixel has `each` samples at the end, unless its exposure says
-    /// how many. What walks from lights show is no part of it before they are `shown`; until then no
-    /// error of the picture is known.
-    pub(super) fn snapshot(
-        &self,
-        exposures: &[Exposure],
-        shown: Option<&LightFilm<'_>>,
-        each: Option<u32>,
-    ) -> Snapshot {
-        let of_lights = shown.map(|shown| shown.film(0));
-        let eyes = exposures.iter().map(|Exposure { film, limit, .. }| {
-            let counts = limit
-                .as_ref()
-                .map(|limit| Box::new(|at| limit.of(at)) as Box<dyn Fn(usize) -> u32>);
-            let even = || each.map(|each| Box::new(move |_| each) as Box<dyn Fn(usize) -> u32>);
-            PartInMaking { film, at_end: counts.or_else(even) }
-        });
-        let lights = of_lights.iter().map(|film| PartInMaking {
-            film,
-            at_end: Some(Box::new(|at| film.pixels[at].samples)),
-        });
-        let mut snapshot = Snapshot::of(&eyes.chain(lights).collect::<Vec<_>>());
-        if self.leaves_rough && shown.is_none() {
-            snapshot.standard_error.fill(f64::INFINITY);
-            snapshot.outlook = None;
-        }
-        snapshot
     }
 }
 

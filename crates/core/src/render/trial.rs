@@ -71,8 +71,7 @@ impl Trial<'_> {
             let wavelengths = sampler.wavelengths(scene.phases());
             let ray = scene.camera.ray(place, sampler.lens(), settings.width, settings.height);
             gathered.clear();
-            let eye =
-                Eye { gathered: &mut gathered, part, guide: None, leaves_rough: false, photons };
+            let eye = Eye { gathered: &mut gathered, part, guide: None, photons };
             PathWalk::gather(scene, path, wavelengths, sampler, &mut tally, eye, (ray, interior));
             if !goes_on(&gathered, tally.segments()) {
                 break;

@@ -122,57 +122,6 @@ impl Camera {
             Projection::Pinhole { .. } | Projection::ThinLens { .. } => side * distance,
         }
     }
-
-    /// How the camera sees a `point`, through the point `u` (uniform in the unit square) of the lens, if
-    /// there is one; nothing where that is behind it.
-    ///
-    /// A place p of the image, in pixels of side a at the distance 1, sees dω = a² cos³θ dp. A point of
-    /// the intensity I at the distance r brings ∫ L dω = I/r², hence ∫ L dp = I/(r² a² cos³θ); by parallel
-    /// rays it is I/a².
-    pub fn see(&self, point: DVec3, u: DVec2, width: u32, height: u32) -> Option<Seen> {
-        const PER_M2: f64 = 1e6;
-        let half = f64::from(height) / 2.0;
-        let scale = self.half_up.length();
-        let side = scale / half;
-        let from_eye = point - self.position;
-        let depth = from_eye.dot(self.forward);
-        if depth <= 0.0 {
-            return None;
-        }
-        let (aside, from) = match self.projection {
-            Projection::Pinhole { .. } => (from_eye / depth, self.position),
-            Projection::ThinLens { aperture, focus, .. } => {
-                let [x, y] = uniform_disc([u.x, u.y]);
-                let across = (self.right * x + self.half_up * y) * (0.5 * aperture / scale);
-                let in_focus = across + (from_eye - across) * (focus / depth);
-                (in_focus / focus, self.position + across)
-            }
-            Projection::Orthographic { .. } => (from_eye, point - self.forward * depth),
-        };
-        let place = DVec2::new(aside.dot(self.right), -aside.dot(self.half_up)) / (scale * scale);
-        let place = place * half + DVec2::new(f64::from(width), f64::from(height)) / 2.0;
-        let distance = from.distance(point);
-        let direction = (from - point) / distance;
-        let cos = -direction.dot(self.forward);
-        let per_intensity = match self.projection {
-            Projection::Orthographic { .. } => PER_M2 / (side * side),
-            _ => PER_M2 / (distance * distance * side * side * cos * cos * cos),
-        };
-        Some(Seen { place, direction, distance, per_intensity })
-    }
-}
-
-/// How a camera sees a point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seen {
-    /// Where in the image, in pixels from its upper left corner.
-    pub place: DVec2,
-    /// The unit vector from the point to the eye.
-    pub direction: DVec3,
-    /// How far the eye is, in mm.
-    pub distance: f64,
-    /// The integral of the radiance over the image, in pixels, per intensity in W/sr towards the eye.
-    pub per_intensity: f64,
 }
 
 fn is_angle(field_of_view_deg: f64) -> bool {
@@ -201,44 +150,6 @@ mod tests {
         assert!((top - DVec3::new(0.0, 1.0, -1.0).normalize()).length() < 1e-15);
         let right = camera.ray(DVec2::new(400.0, 100.0), DVec2::ZERO, 400, 200).direction;
         assert!((right - DVec3::new(2.0, 0.0, -1.0).normalize()).length() < 1e-15);
-    }
-
-    #[test]
-    fn a_point_is_seen_where_the_ray_to_it_goes_through_the_image() {
-        let projections = [
-            Projection::Pinhole { field_of_view_deg: 40.0 },
-            Projection::ThinLens { field_of_view_deg: 40.0, aperture: 3.0, focus: 50.0 },
-            Projection::Orthographic { height: 60.0 },
-        ];
-        for projection in projections {
-            let position = DVec3::new(3.0, -2.0, 70.0);
-            let camera = Camera::new(position, DVec3::X, DVec3::Y, projection).unwrap();
-            for (x, y, along) in [(10.0, 20.0, 40.0), (150.0, 70.0, 90.0), (99.0, 3.0, 5.0)] {
-                let (place, u) = (DVec2::new(x, y), DVec2::new(0.3, 0.8));
-                let ray = camera.ray(place, u, 160, 100);
-                let seen = camera.see(ray.at(along), u, 160, 100).unwrap();
-                assert!(seen.place.distance(place) < 1e-9, "{projection:?}: {seen:?}");
-                assert!((seen.direction + ray.direction).length() < 1e-12);
-                assert!((seen.distance - along).abs() < 1e-9);
-                assert!(camera.see(ray.at(-along), u, 160, 100).is_none());
-            }
-        }
-    }
-
-    #[test]
-    fn a_point_s_light_is_its_illuminance_over_the_solid_angle_of_a_pixel() {
-        // 100 pixels over 2 tan 20°, at 30 mm and 11°: by numbers that the code does not share.
-        let camera = Camera::new(
-            DVec3::ZERO,
-            DVec3::Z,
-            DVec3::Y,
-            Projection::Pinhole { field_of_view_deg: 40.0 },
-        );
-        let (sin, cos) = 11.0_f64.to_radians().sin_cos();
-        let point = DVec3::new(0.0, sin, cos) * 30.0;
-        let seen = camera.unwrap().see(point, DVec2::ZERO, 160, 100).unwrap();
-        let pixel = 0.007_279_404_685_324_05_f64.powi(2) * 0.981_627_183_447_664_f64.powi(3);
-        assert!((seen.per_intensity * 9e-4 * pixel - 1.0).abs() < 1e-12);
     }
 
     #[test]

@@ -13,7 +13,7 @@ mod world;
 
 pub use body::{Body, BodyId};
 pub use builder::{SceneBuilder, SceneError};
-pub use camera::{Camera, CameraError, Projection, Seen};
+pub use camera::{Camera, CameraError, Projection};
 pub use crossing::{Face, Place};
 pub use emission::{Distribution, Emission, Strength};
 pub use emitters::{EmitterSample, Emitters};

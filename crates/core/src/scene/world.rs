@@ -9,7 +9,7 @@ use super::interior::Interior;
 use crate::geometry::{Primitive, SurfacePoint, TriangleHit, Triangles};
 use crate::light::{Background, Light};
 use crate::math::{DVec3, Ray};
-use crate::matter::{Dielectric, Finish, Material};
+use crate::matter::{Dielectric, Material};
 use crate::spectrum::{SampledSpectrum, SampledWavelengths, SpectralTable};
 
 /// Where a ray meets the scene.
@@ -137,18 +137,9 @@ impl Scene {
         &self.materials[self.bodies[body as usize].material]
     }
 
-    /// Whether there is transparent matter with a slightly rough surface.
-    pub fn has_slightly_rough_glass(&self) -> bool {
-        self.has_glass_of(Finish::is_slightly_rough)
-    }
-
     /// Whether there is transparent matter with a rough surface.
     pub fn has_rough_glass(&self) -> bool {
-        self.has_glass_of(Finish::is_rough)
-    }
-
-    fn has_glass_of(&self, finish: impl Fn(&Finish) -> bool) -> bool {
-        let is_it = |own: &Material| own.dielectric().is_some() && finish(&own.finish);
+        let is_it = |own: &Material| own.dielectric().is_some() && own.finish.is_rough();
         self.materials.iter().any(is_it)
     }
 

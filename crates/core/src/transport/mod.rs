@@ -17,6 +17,6 @@ pub use gathered::Gathered;
 pub use guide::Guide;
 pub use hall::{HallSettings, HallWalk};
 pub use ledger::{Balance, Ledger};
-pub use path::{Carried, Eye, Part, PathSettings, PathWalk, Screen};
+pub use path::{Carried, Eye, Part, PathSettings, PathWalk};
 pub use photons::{Crowd, Landed, Landing, Photons};
 pub use tally::Tally;

@@ -17,7 +17,7 @@ use std::sync::Arc;
 use thiserror::Error;
 
 use super::ledger::Ledger;
-use super::path::{Carried, PathSettings, PathWalk, Screen};
+use super::path::{Carried, PathSettings, PathWalk};
 use super::tally::Tally;
 use crate::math::Ray;
 use crate::sampling::{Choice, PixelSampler};
@@ -170,8 +170,6 @@ pub struct LightWalk<'a> {
     scene: &'a Scene,
     source: &'a LightSource,
     settings: PathSettings,
-    /// On which the scene's camera sees the light where it crosses rough boundaries.
-    screen: Option<Screen>,
     /// The flux, as the eye weighs it by X + Y + Z, of a usual walk: roulette goes by shares of it.
     usual: f64,
     luminous_flux: f64,
@@ -199,14 +197,8 @@ impl<'a> LightWalk<'a> {
         let usual = (x + y + z) / scale.iter().sum::<f64>();
         let sound = y.is_finite() && y > 0.0 && usual.is_finite() && usual > 0.0;
         sound
-            .then_some(Self { scene, source, settings, screen: None, usual, luminous_flux: y })
+            .then_some(Self { scene, source, settings, usual, luminous_flux: y })
             .ok_or(FluxError::NoFlux)
-    }
-
-    /// Show what the scene's camera sees of the light where it crosses rough boundaries.
-    #[must_use]
-    pub fn shown_on(self, screen: Screen) -> Self {
-        Self { screen: Some(screen), ..self }
     }
 
     /// The luminous flux of all groups in lm: the unit of the ledgers.
@@ -251,7 +243,7 @@ impl<'a> LightWalk<'a> {
                     wavelengths,
                     sampler,
                     tally,
-                    (&mut shown, self.screen),
+                    &mut shown,
                     start,
                     carried,
                 );

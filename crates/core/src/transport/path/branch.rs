@@ -29,8 +29,6 @@ pub(super) struct Branch {
     pub has_scattered: bool,
     /// Which of the emitters that it meets count.
     pub seeks: Seeks,
-    /// Whether it has met light that landed; a walk from a light: whether it has been on a matt surface.
-    pub has_met: bool,
     /// Whether it has been reflected or turned at random since it started.
     pub has_turned: bool,
     /// Σ 1/f, in sr, of the ground behind it where the light on its way can be met, too: 0 where none is, or
@@ -101,7 +99,6 @@ impl Branch {
             parted: 0,
             has_scattered: false,
             seeks: Seeks::All,
-            has_met: false,
             has_turned: false,
             rivals: 0.0,
             share: 1.0,

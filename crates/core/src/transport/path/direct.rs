@@ -9,13 +9,13 @@
 
 use std::f64::consts::PI;
 
-use crate::math::{DVec2, DVec3, Ray};
+use crate::math::{DVec3, Ray};
 use crate::scene::BodyId;
 use crate::spectrum::SampledSpectrum;
 use crate::transport::guide::Answered;
 
 use super::branch::{Branch, CameBy, Seeks};
-use super::purpose::{Carried, Part, Purpose, Screen};
+use super::purpose::{Carried, Part, Purpose};
 use super::vertex::Vertex;
 use super::{Meeting, PathWalk};
 
@@ -57,7 +57,7 @@ impl<'a> PathWalk<'a> {
                     eye.gathered.add(scene, wavelengths, group, branch.throughput * radiance);
                 });
             }
-            Purpose::Light(receive, _) => receive(Carried::Left(&branch.ray), branch.throughput),
+            Purpose::Light(receive) => receive(Carried::Left(&branch.ray), branch.throughput),
         }
     }
 
@@ -106,23 +106,13 @@ impl<'a> PathWalk<'a> {
         if !meets_again && !self.widens(branch) {
             return false;
         }
-        let was_left = self.all_is_left(branch);
-        if !self.land(branch, vertex, ground.as_ref()) {
-            return false;
-        }
+        let was_left = Self::all_is_left(branch);
+        self.land(branch, vertex, ground.as_ref());
         let is_met = ground.as_ref().is_some_and(|ground| match self.purpose {
             Purpose::Eye(_) => self.meet(branch, vertex, ground),
-            Purpose::Light(..) => true,
+            Purpose::Light(_) => true,
         });
         branch.has_turned = true;
-        // Where light is met, it is not shown.
-        let is_shown = vertex.is_boundary && ground.is_none();
-        if branch.depth == 0 && is_shown && self.purpose.leaves_rough() {
-            branch.seeks = Seeks::Nothing;
-        }
-        if is_shown {
-            self.show(branch, vertex);
-        }
         let aims = self.aims(branch, vertex, &lanes);
         self.see_emitters(branch, vertex, &lanes, &aims);
         let [technique, u, v, w] = branch.sampler.next_4d();
@@ -152,7 +142,7 @@ impl<'a> PathWalk<'a> {
         if is_met {
             self.leave_ground(branch, vertex, wo, answer);
         }
-        if !was_left && self.all_is_left(branch) && !self.survives_unseen(branch) {
+        if !was_left && Self::all_is_left(branch) && !self.survives_unseen(branch) {
             return false;
         }
         if !vertex.agrees(wo) {
@@ -166,21 +156,19 @@ impl<'a> PathWalk<'a> {
     }
 
     /// Whether all that a branch meets of emitters is left to walks from lights.
-    fn all_is_left(&self, branch: &Branch) -> bool {
-        branch.is_left()
-            && branch.rivals <= 0.0
-            && (branch.has_met || self.purpose.photons().is_none())
+    fn all_is_left(branch: &Branch) -> bool {
+        branch.is_left() && branch.rivals <= 0.0
     }
 
     /// Whether a branch goes on that is reflected or turned at random: a narrow one leaves emitters to
     /// others from there on.
     pub(super) fn widens(&self, branch: &mut Branch) -> bool {
-        let was_left = self.all_is_left(branch);
+        let was_left = Self::all_is_left(branch);
         branch.rivals = 0.0;
         if branch.seeks == Seeks::Refracted {
             branch.seeks = Seeks::Nothing;
         }
-        was_left || !self.all_is_left(branch) || self.survives_unseen(branch)
+        was_left || !Self::all_is_left(branch) || self.survives_unseen(branch)
     }
 
     /// Whether a branch goes on whose emitters are left to others. Under a dark background it brings no
@@ -193,33 +181,6 @@ impl<'a> PathWalk<'a> {
         let [u, ..] = branch.sampler.next_4d();
         branch.throughput *= 1.0 / FEW;
         u < FEW
-    }
-
-    /// Show what the camera sees of a walk from a light at a vertex, along a straight way.
-    fn show(&mut self, branch: &mut Branch, vertex: &Vertex<'_>) {
-        let Some(Screen { width, height }) = self.purpose.screen() else {
-            return;
-        };
-        let [u, v, ..] = branch.sampler.next_4d();
-        let camera = &self.scene.camera;
-        let Some(seen) = camera.see(vertex.position, DVec2::new(u, v), width, height) else {
-            return;
-        };
-        // No pixel gathers from farther than two beside the image.
-        let size = DVec2::new(f64::from(width), f64::from(height));
-        let off = (seen.place - seen.place.clamp(DVec2::ZERO, size)).abs().max_element();
-        if off > 2.0 || !vertex.agrees(seen.direction) {
-            return;
-        }
-        let answer = vertex.answer(seen.direction);
-        if answer.max() <= 0.0 {
-            return;
-        }
-        let way = self.straight_way(vertex, seen.direction, seen.distance, None);
-        if let (Some((transmitted, _)), Purpose::Light(receive, _)) = (way, &mut self.purpose) {
-            let shown = branch.throughput * answer * transmitted * seen.per_intensity;
-            receive(Carried::Shown(seen.place), shown);
-        }
     }
 
     /// How `scatter` aims. What is not aimed weighs more by 1/(1 − share) at each turn: so that after many
@@ -279,7 +240,7 @@ impl<'a> PathWalk<'a> {
         if emitted.max() <= 0.0 || answer.max() <= 0.0 || !vertex.agrees(seen.direction) {
             return;
         }
-        let way = self.straight_way(vertex, seen.direction, seen.distance, Some(emitter.body));
+        let way = self.straight_way(vertex, seen.direction, seen.distance, emitter.body);
         let Some((transmitted, index)) = way else {
             return;
         };
@@ -291,15 +252,14 @@ impl<'a> PathWalk<'a> {
         self.add_light(emitter.group, arriving * (share / (seen.pdf + other)));
     }
 
-    /// The transmittance of the straight way to a point, on the surface of the body `end` or on none, and
-    /// the index of the medium there; nothing where anything is in the way but boundaries that are none
-    /// to light.
+    /// The transmittance of the straight way to a point on the surface of the body `end`, and the index of
+    /// the medium there; nothing where anything is in the way but boundaries that are none to light.
     fn straight_way(
         &mut self,
         vertex: &Vertex<'_>,
         direction: DVec3,
         distance: f64,
-        end: Option<BodyId>,
+        end: BodyId,
     ) -> Option<(SampledSpectrum, SampledSpectrum)> {
         let (origin, mut interior) = vertex.leave_along(direction);
         let mut left = distance;
@@ -307,9 +267,9 @@ impl<'a> PathWalk<'a> {
         let mut share = SampledSpectrum::ONE;
         for _ in 0..MOST_SURFACES {
             self.tally.shadow_rays += 1;
-            ray.t_max = if end.is_some() { left * (1.0 + 2.0 * SAME_POINT) } else { left };
-            let place = self.scene.first_place(&ray);
-            let length = place.as_ref().map_or(left, |place| place.hit.point.t);
+            ray.t_max = left * (1.0 + 2.0 * SAME_POINT);
+            let place = self.scene.first_place(&ray)?;
+            let (hit, length) = (place.hit, place.hit.point.t);
             if let Some(medium) = self.scene.medium(&interior) {
                 let absorption = medium.absorption.at(self.wavelengths);
                 let extinction = medium.scattering.as_ref().map_or(absorption, |scattering| {
@@ -317,12 +277,8 @@ impl<'a> PathWalk<'a> {
                 });
                 share *= extinction.transmittance(length);
             }
-            let Some(place) = place else {
-                return Some((share, self.index(&interior)));
-            };
-            let hit = place.hit;
             if self.scene.material_of(hit.body).dielectric().is_none() {
-                let reached = end == Some(hit.body) && length >= left * (1.0 - SAME_POINT);
+                let reached = end == hit.body && length >= left * (1.0 - SAME_POINT);
                 return reached.then(|| (share, self.index(&interior)));
             }
             let beyond = interior.through(place.faces(), |_, _| {});

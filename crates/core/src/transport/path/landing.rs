@@ -15,22 +15,17 @@ use super::PathWalk;
 
 impl PathWalk<'_> {
     /// Let a walk from a light land on the `ground` of a vertex, or else show that it arrives where walks
-    /// from the eye have to find it; whether it goes on.
-    pub(super) fn land(
-        &mut self,
-        branch: &mut Branch,
-        vertex: &Vertex<'_>,
-        ground: Option<&Ground>,
-    ) -> bool {
+    /// from the eye have to find it.
+    pub(super) fn land(&mut self, branch: &Branch, vertex: &Vertex<'_>, ground: Option<&Ground>) {
         let weight = self.weight(branch.throughput);
-        let Purpose::Light(receive, screen) = &mut self.purpose else {
-            return true;
+        let Purpose::Light(receive) = &mut self.purpose else {
+            return;
         };
         let (position, direction, way) = (vertex.position, -branch.ray.direction, branch.way);
         let arrived = Carried::Arrived(Arrival { position, direction, way, weight });
         let Some(Ground { body, is_matt, normal, shading }) = ground.copied() else {
             receive(arrived, branch.throughput);
-            return true;
+            return;
         };
         let is_straight = !vertex.is_boundary && !branch.has_turned;
         let rivals = branch.rivals;
@@ -42,8 +37,6 @@ impl PathWalk<'_> {
         if is_straight && (branch.depth > 0 || !is_matt) {
             receive(arrived, branch.throughput);
         }
-        branch.has_met |= is_matt;
-        !(branch.has_met && screen.is_some())
     }
 
     /// Take what landed round a vertex; whether the branch meets light there. What comes to opaque matter by
@@ -58,14 +51,12 @@ impl PathWalk<'_> {
         vertex: &Vertex<'_>,
         ground: &Ground,
     ) -> bool {
-        let is_done = branch.has_met || branch.is_left() && !ground.is_matt;
-        let meets = branch.rivals > 0.0 || !is_done;
+        let meets = branch.rivals > 0.0 || branch.seeks == Seeks::All;
         let Some(photons) = self.purpose.photons().filter(|_| meets) else {
             return false;
         };
         let takes_all = vertex.is_boundary || branch.is_left() && ground.is_matt;
         branch.seeks = if takes_all { Seeks::Nothing } else { Seeks::Refracted };
-        branch.has_met = true;
         let sent_on = self.weight(branch.throughput * vertex.albedo());
         let normal = ground.normal;
         let per_n2 = [normal, -normal].map(|side| {

@@ -40,7 +40,7 @@ use medium::Scattered;
 use purpose::Purpose;
 use vertex::Vertex;
 
-pub use purpose::{Carried, Eye, Part, Receive, Screen};
+pub use purpose::{Carried, Eye, Part, Receive};
 
 /// How the walks are spent. None of these changes what the picture tends to, but `max_depth`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -128,13 +128,13 @@ impl<'a> PathWalk<'a> {
         wavelengths: SampledWavelengths,
         sampler: PixelSampler,
         tally: &'a mut Tally,
-        (receive, screen): (&'a mut Receive<'a>, Option<Screen>),
+        receive: &'a mut Receive<'a>,
         start: (Ray, Interior),
         (flux, booked): (SampledSpectrum, SampledSpectrum),
     ) {
         let visibility = scene.visibility.at(wavelengths);
         let pending = vec![Branch { throughput: flux, ..Branch::from_eye(start, sampler) }];
-        let purpose = Purpose::Light(receive, screen);
+        let purpose = Purpose::Light(receive);
         Self { scene, settings, wavelengths, visibility, booked, tally, purpose, pending }.run();
     }
 

@@ -2,7 +2,7 @@
 //! [`Purpose`]: what a walk is for.
 
 use super::branch::Branch;
-use crate::math::{DVec2, Ray};
+use crate::math::Ray;
 use crate::spectrum::SampledSpectrum;
 use crate::transport::guide::{Arrival, Guide};
 use crate::transport::photons::{Landing, Photons};
@@ -16,8 +16,6 @@ pub enum Carried<'r> {
     Arrived(Arrival),
     /// It lands where walks from the eye can meet it.
     Landed(Landing),
-    /// A camera sees it at this place of its image, in pixels: the radiance there over this density.
-    Shown(DVec2),
 }
 
 /// Takes what a walk from a light shows.
@@ -44,20 +42,8 @@ pub struct Eye<'a> {
     pub part: Part,
     /// Where light comes from.
     pub guide: Option<&'a Guide>,
-    /// Whether walks from lights show what emitters send through rough boundaries that are the first
-    /// thing the eye sees: then it is left to them.
-    pub leaves_rough: bool,
     /// What landed on surfaces: there, some of the light of emitters is left to it.
     pub photons: Option<&'a Photons>,
-}
-
-/// The image on which a walk from a light shows what a camera sees of it, in pixels.
-#[derive(Clone, Copy, Debug)]
-pub struct Screen {
-    /// Its width.
-    pub width: u32,
-    /// Its height.
-    pub height: u32,
 }
 
 /// What a walk is for.
@@ -65,7 +51,7 @@ pub(super) enum Purpose<'a> {
     /// To bring an eye the light that arrives there: emissions and the background are looked for.
     Eye(Eye<'a>),
     /// To carry flux from a light until it leaves the scene.
-    Light(&'a mut Receive<'a>, Option<Screen>),
+    Light(&'a mut Receive<'a>),
 }
 
 impl<'a> Purpose<'a> {
@@ -86,28 +72,15 @@ impl<'a> Purpose<'a> {
                 Part::All | Part::Specular => !branch.is_left(),
                 Part::Scattered => branch.has_scattered && !branch.is_left(),
             },
-            Self::Light(..) => false,
+            Self::Light(_) => false,
         }
-    }
-
-    /// Whether a walk's light at a rough boundary, the first thing seen, is left to walks from lights.
-    pub fn leaves_rough(&self) -> bool {
-        matches!(self, Self::Eye(Eye { leaves_rough: true, .. }))
     }
 
     /// What landed on surfaces.
     pub fn photons(&self) -> Option<&'a Photons> {
         match self {
             Self::Eye(eye) => eye.photons,
-            Self::Light(..) => None,
-        }
-    }
-
-    /// The image on which a walk from a light shows itself.
-    pub fn screen(&self) -> Option<Screen> {
-        match self {
-            Self::Eye(_) => None,
-            Self::Light(_, screen) => *screen,
+            Self::Light(_) => None,
         }
     }
 
@@ -115,7 +88,7 @@ impl<'a> Purpose<'a> {
     pub fn guide(&self) -> Option<&'a Guide> {
         match self {
             Self::Eye(eye) => eye.guide,
-            Self::Light(..) => None,
+            Self::Light(_) => None,
         }
     }
 }

@@ -172,9 +172,8 @@ impl<'a> Vertex<'a> {
             return None;
         };
         let is_matt = bsdf.is_broad() && !self.is_boundary;
-        let is_met = if self.is_boundary { bsdf.is_broad() } else { bsdf.spreads() };
         let (normal, shading) = (*true_normal, frame.z_axis);
-        is_met.then_some(Ground { body: *body, is_matt, normal, shading })
+        bsdf.spreads().then_some(Ground { body: *body, is_matt, normal, shading })
     }
 
     /// Where a ray along `wo` starts, and in which bodies.
