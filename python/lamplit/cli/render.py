@@ -204,7 +204,6 @@ def _found_line(found: dict[str, float]) -> str | None:
         "specular": "in mirrors and through glass",
         "scattered": "scattered",
         "landed": "where light landed",
-        "shown_by_lights": "through rough covers, from the lights",
     }
     total = sum(found.values())
     if len(found) < 2 or total <= 0.0:

@@ -23,8 +23,6 @@ _BAND_BYTES_PER_PIXEL = 16
 _LAYER_BYTES_PER_PIXEL = 88 + 2 * 24
 #: A picture's spectra on twice its width and height, while glare is laid on it.
 _GLARE_BYTES_PER_PIXEL = 210
-#: Where light is shown through rough covers: 16 pictures of X, Y, Z, by light group with layers.
-_SHOWN_BYTES_PER_PIXEL = 16 * 24
 #: Light that landed, twice while it is sorted, and its places: so much of it at most, and about so
 #: much per pixel, of as many samples as share it.
 _LANDED_BYTES = 2 * 256 + 24
@@ -74,8 +72,8 @@ def memory_estimate(scene: Scene, *, bands: int = 0, layers: int = 0) -> MemoryE
     per_pixel = _FILM_BYTES_PER_PIXEL + _BAND_BYTES_PER_PIXEL * bands
     per_pixel += _LAYER_BYTES_PER_PIXEL * layers
     if _is_lit(scene):
-        # A film each for the sharp and the soft part, and what walks from lights show.
-        per_pixel = 2 * per_pixel + _SHOWN_BYTES_PER_PIXEL * max(1, layers)
+        # A film each for the sharp and the soft part.
+        per_pixel *= 2
     per_pixel += _GLARE_BYTES_PER_PIXEL if scene.display.glare else 0
     landed = min(_MOST_LANDED, _LANDED_PER_PIXEL * pixels) if _is_lit(scene) else 0
     return MemoryEstimate(

@@ -20,7 +20,7 @@ use crate::transport::{
 pub const BATCHES: usize = 32;
 
 /// Keeps the random numbers of walks from lights and from the eye apart.
-pub(super) const FROM_LIGHTS: u64 = 0xA076_1D64_78BD_642F;
+const FROM_LIGHTS: u64 = 0xA076_1D64_78BD_642F;
 
 /// How long a round of all batches should take: what is done is looked at, and kept, in between.
 const ROUND: Duration = Duration::from_millis(200);

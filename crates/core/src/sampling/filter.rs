@@ -20,33 +20,6 @@ impl PixelFilter {
         DVec2::new(self.inverse_distribution(u.x), self.inverse_distribution(u.y))
     }
 
-    /// The density of [`offset`](Self::offset), per pixel.
-    pub fn density(self, offset: DVec2) -> f64 {
-        self.along(offset.x) * self.along(offset.y)
-    }
-
-    /// How far from its centre, along a side, a pixel gathers.
-    pub fn reach(self) -> f64 {
-        match self {
-            Self::Box => 0.5,
-            Self::Tent => 1.0,
-            Self::Gaussian => 1.5,
-        }
-    }
-
-    fn along(self, x: f64) -> f64 {
-        // ∫ exp(−2x²) over |x| ≤ 1.5: √(π/2) erf(3/√2).
-        const GAUSSIAN: f64 = 1.249_930_444_741_547_4;
-        if x.abs() > self.reach() {
-            return 0.0;
-        }
-        match self {
-            Self::Box => 1.0,
-            Self::Tent => 1.0 - x.abs(),
-            Self::Gaussian => (-2.0 * x * x).exp() / GAUSSIAN,
-        }
-    }
-
     fn inverse_distribution(self, u: f64) -> f64 {
         match self {
             Self::Box => u - 0.5,
@@ -140,30 +113,6 @@ mod tests {
             assert!(mean.abs() < 1e-9, "{filter:?} is centred, mean {mean}");
             assert!((square - variance).abs() < 1e-5, "{filter:?} variance {square}");
             assert!(reach <= half_width && reach > 0.97 * half_width, "{filter:?} reach {reach}");
-        }
-    }
-
-    #[test]
-    fn the_density_is_that_of_the_offsets() {
-        for filter in [PixelFilter::Box, PixelFilter::Tent, PixelFilter::Gaussian] {
-            let (n, steps) = (20_000, 12);
-            let mut counts = vec![0.0; steps];
-            let width = 2.0 * filter.reach() / steps as f64;
-            for i in 0..n {
-                let u = DVec2::new((f64::from(i) + 0.5) / f64::from(n), 0.5);
-                let bin = (filter.offset(u).x + filter.reach()) / width;
-                counts[(bin as usize).min(steps - 1)] += 1.0 / (f64::from(n) * width);
-            }
-            let across = filter.density(DVec2::ZERO).sqrt();
-            for (bin, count) in counts.into_iter().enumerate() {
-                // Simpson's rule over the bin.
-                let [a, b, c] = [1e-9, 0.5, 1.0 - 1e-9].map(|part| {
-                    let x = (bin as f64 + part) * width - filter.reach();
-                    filter.density(DVec2::new(x, 0.0)) / across
-                });
-                let expected = (a + 4.0 * b + c) / 6.0;
-                assert!((count - expected).abs() < 2e-3, "{filter:?} {bin}: {count} {expected}");
-            }
         }
     }
 

@@ -167,8 +167,7 @@ fn a_wall_that_a_lamp_shines_at_is_as_bright_as_by_path_beside_a_frosted_pane_an
 
 #[test]
 fn light_from_the_lamps_and_light_found_from_the_eye_make_the_picture_that_the_eye_finds() {
-    // Behind a very rough pane what has landed is met, in discs of some pixels, which are small beside
-    // the blocks; a less rough one is shown to the camera.
+    // On a pane what has landed is met, in discs of some pixels, which are small beside the blocks.
     let whole = |alpha: f64| vec![(alpha, [-12.0, 12.0])];
     for (projection, panes) in [
         (Projection::Pinhole { field_of_view_deg: 24.0 }, whole(0.3)),
@@ -262,6 +261,23 @@ fn light_that_is_mirrored_to_a_glossy_floor_is_met_where_it_lands() {
     let sigma = lit.sigma.hypot(path.sigma);
     assert!((lit.mean - path.mean).abs() < 3.0 * sigma, "{lit:?} {path:?}");
     assert!(sigma < 0.03 * path.mean, "{lit:?} {path:?}");
+}
+
+#[test]
+fn light_that_comes_straight_to_a_glossy_mirror_is_seen_once_in_another() {
+    let mut world = World::dark();
+    let lamp = world.add(matt(0.0), disc(DVec3::ZERO, DVec3::Y, 4.0));
+    world.shine(lamp, Strength::Flux(flat(2.0)), 1);
+    let mirror = cuboid(DVec3::new(-25.0, 50.0, -25.0), DVec3::new(25.0, 51.0, 25.0));
+    world.add_rough(metal(), 0.12, mirror);
+    world.add_rough(metal(), 0.12, plate(-51.0, -50.0));
+    let (at, eye) = (DVec3::new(30.0, -50.0, 0.0), DVec3::new(15.0, 75.0, 5.0));
+    let scene = world.along(at + eye, -eye);
+    let path = Take::of(1 << 14, USUAL).luminance(&scene);
+    let lit = Take::lit(1 << 8, USUAL).by_seeds(48, &scene, None);
+    let sigma = lit.sigma.hypot(path.sigma);
+    assert!((lit.mean - path.mean).abs() < 3.0 * sigma, "{lit:?} {path:?}");
+    assert!(sigma < 0.02 * path.mean, "{lit:?} {path:?}");
 }
 
 /// A part of a paraboloid whose focus is the lamp's image: it sends what the flat mirror sends it straight
