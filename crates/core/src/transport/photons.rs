@@ -5,7 +5,7 @@
 //! in just the direction that the lens mirrors into a die. Walks from the lights land there by
 //! themselves. So the two meet: a walk from the eye takes the light that landed within a small disc
 //! round the place where it arrives. Light that came to opaque matter by refraction alone, or straight,
-//! is met behind very rough boundaries alone: elsewhere walks from the eye find it without any blur.
+//! is met behind rough boundaries alone: elsewhere walks from the eye find it without any blur.
 //!
 //! Every batch of samples has photons of its own, so that batches are independent, and its discs
 //! are smaller than those before it: the blur goes to nothing, and so does the noise.

@@ -40,7 +40,7 @@ impl PathWalk<'_> {
     }
 
     /// Take what landed round a vertex; whether the branch meets light there. What comes to opaque matter by
-    /// refraction alone is left for the branch to find, but for matt surfaces behind very rough boundaries:
+    /// refraction alone is left for the branch to find, but for matt surfaces behind rough boundaries:
     /// what the eye sees there is blurred by far more than a disc.
     ///
     /// The radiance that a surface sends out is Σ f·E over the irradiances E that arrive from each
