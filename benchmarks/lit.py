@@ -98,25 +98,31 @@ def measure(
         print(f"this Lamplit has no method {name!r}: left out")
     rows: list[dict[str, Any]] = []
     sheet = Sheet()
-    about = machine()
+    about = {
+        "machine": machine(),
+        "version": ll.__version__,
+        "settings": dataclasses.asdict(settings),
+    }
+    page = ""
     with tempfile.TemporaryDirectory(prefix="lamplit-bench-") as folder:
         for lamp in lamps:
             scene = lit_scene(lamp, Path(folder), triangles=settings.triangles)
             scene = picture(scene, width=settings.width, height=settings.height)
             rows.append({"lamp": lamp, **_measure_lamp(scene, lamp, known, settings, sheet)})
+            page = _write(results, {**about, "rows": rows})
             print(f"measured: lit, {lamp}", flush=True)
-    found = {
-        "machine": about,
-        "version": ll.__version__,
-        "settings": dataclasses.asdict(settings),
-        "rows": rows,
-    }
+    sheet.write(results / "lit-pictures.png")
+    print(page)
+
+
+def _write(results: Path, found: dict[str, Any]) -> str:
+    """Write what was found so far, and return the page."""
+    results.mkdir(parents=True, exist_ok=True)
     (results / "lit.json").write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
     page = as_markdown(found)
     (results / "lit.md").write_text(page, encoding="utf-8")
     draw(found, results / "lit.png")
-    sheet.write(results / "lit-pictures.png")
-    print(page)
+    return page
 
 
 def _measure_lamp(
