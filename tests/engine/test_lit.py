@@ -129,5 +129,5 @@ def test_the_few_samples_of_a_frosted_bulb_show_its_light(scene_of: Callable[...
 
 def test_the_films_of_a_lit_picture_are_foretold(scene_of: Callable[..., Any]) -> None:
     lit, path = (memory_estimate(bulb(scene_of, method=method)) for method in ("auto", "path"))
-    # Two films of 144 bytes a pixel instead of one, 16 times three doubles, and what landed.
+    # Two films of 144 bytes a pixel instead of one, and what landed.
     assert lit.film_bytes - path.film_bytes == (144 + 8 * 12 * 536) * 12 * 10
