@@ -123,9 +123,11 @@ impl Rendering<'_> {
         // No spread is known of fewer than two.
         let second = samples.end.min(samples.start + 2);
         self.expose(exposures, tally, samples.start..second, None);
-        let quarter = self.settings.time_budget.map(|budget| {
-            (budget / 4).saturating_sub(self.began.elapsed()).max(Duration::from_nanos(1))
-        });
+        let quarter =
+            self.settings.time_budget.map(|all| (all / 4).saturating_sub(self.began.elapsed()));
+        if quarter.is_some_and(|left| left.is_zero()) {
+            return second;
+        }
         self.expose(exposures, tally, second..samples.end, quarter).max(second)
     }
 

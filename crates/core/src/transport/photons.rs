@@ -51,7 +51,7 @@ pub struct Landing {
     pub position: DVec3,
     /// The unit vector back to where it came from.
     pub direction: DVec3,
-    /// The surface's true normal, on either side.
+    /// The surface's true normal, out of its body: the two faces of a film are not one.
     pub normal: DVec3,
     /// Its shading normal, on the same side.
     pub shading: DVec3,
@@ -240,10 +240,13 @@ impl Photons {
     ) {
         let radius =
             self.radius.min(self.crowd.radius(position, body, (self.shrunk, self.landed.paths)));
-        let (middle, r2) = (cell(position, self.radius), radius * radius);
-        for index in 0..27 {
-            let step = IVec3::new(index % 3 - 1, index / 3 % 3 - 1, index / 9 - 1);
-            let Some(own) = self.cells.get(&middle.wrapping_add(step)) else {
+        let r2 = radius * radius;
+        let [low, high] = [-radius, radius].map(|r| cell(position + r, self.radius));
+        let steps = high.wrapping_sub(low) + IVec3::ONE;
+        for index in 0..steps.element_product() {
+            let (x, rest) = (index % steps.x, index / steps.x);
+            let step = IVec3::new(x, rest % steps.y, rest / steps.y);
+            let Some(own) = self.cells.get(&low.wrapping_add(step)) else {
                 continue;
             };
             for index in own.clone() {
@@ -253,7 +256,7 @@ impl Photons {
                     continue;
                 }
                 let Photon { at, flux, group } = &self.landed.photons[index];
-                if at.normal.dot(normal).abs() > SAME_SURFACE {
+                if at.normal.dot(normal) > SAME_SURFACE {
                     // Most in the middle, none at the rim; 1 over the disc.
                     let per_m2 = 2.0 * (1.0 - d2) / (PI * r2 * M2_PER_MM2);
                     found(at, *flux * per_m2, *group);

@@ -166,6 +166,24 @@ fn a_wall_that_a_lamp_shines_at_is_as_bright_as_by_path_beside_a_frosted_pane_an
 }
 
 #[test]
+fn light_that_crosses_a_frosted_film_is_seen_once_however_thin_it_is() {
+    // Much thinner than the discs in which light is met, 0.4 mm.
+    let mut world = World::dark();
+    let lamp = world.add(matt(0.0), disc(DVec3::ZERO, DVec3::Y, 1.0));
+    world.shine(lamp, Strength::Flux(flat(2.0)), 1);
+    let film = cuboid(DVec3::new(-12.0, 6.0, -12.0), DVec3::new(12.0, 6.02, 12.0));
+    world.add_rough(glass(1.5), 0.3, film);
+    let (eye, at) = (DVec3::new(30.0, 60.0, 5.0), DVec3::new(1.0, 6.0, 0.0));
+    let projection = Projection::Orthographic { height: 4.0 };
+    let scene = world.seen_by(Camera::new(eye, at, DVec3::Z, projection).unwrap());
+    let [path, lit] = [Take::of(1 << 5, USUAL), Take::lit(1 << 4, USUAL)]
+        .map(|take| mean_over_seeds(&scene, 32, &take));
+    let sigma = lit.sigma.hypot(path.sigma);
+    assert!((lit.mean - path.mean).abs() < 3.0 * sigma, "{lit:?} {path:?}");
+    assert!(sigma < 0.02 * path.mean, "{lit:?} {path:?}");
+}
+
+#[test]
 fn light_from_the_lamps_and_light_found_from_the_eye_make_the_picture_that_the_eye_finds() {
     // On a pane what has landed is met, in discs of some pixels, which are small beside the blocks.
     let whole = |alpha: f64| vec![(alpha, [-12.0, 12.0])];

@@ -7,7 +7,9 @@ use super::lambert::above;
 use super::{happens, Ratios, Rough};
 use crate::math::DVec3;
 use crate::matter::albedo::{AlbedoTable, Between, Side, Sides};
-use crate::matter::fresnel::{dielectric_reflectance, reflect, refract};
+use crate::matter::fresnel::{
+    dielectric_reflectance, polarised_reflectances_between, reflect, refract,
+};
 use crate::matter::microfacet::{masking_of_reflection, masking_of_transmission};
 use crate::spectrum::SampledSpectrum;
 
@@ -33,14 +35,6 @@ struct Pair<'a> {
     lambda_i: f64,
     mu_i: Between,
     mu_o: Between,
-}
-
-/// The facet that joins two directions.
-struct Joint {
-    /// The share of the light that the facet sends on this way.
-    f: f64,
-    /// The density of that facet among those seen, per sr of wo.
-    visible: f64,
 }
 
 impl<'a> Interface<'a> {
@@ -75,7 +69,7 @@ impl<'a> Interface<'a> {
             return SampledSpectrum::ZERO;
         };
         let masking = pair.masking() * (1.0 + pair.lambda_i);
-        self.ratios.map(|eta| pair.single(eta) * masking + pair.further(eta))
+        pair.single(&self.ratios) * masking + pair.further(&self.ratios)
     }
 
     pub(super) fn pdf(&self, wi: DVec3, wo: DVec3, lanes: &SampledSpectrum) -> f64 {
@@ -86,7 +80,7 @@ impl<'a> Interface<'a> {
         let loss = sides.here.shares(pair.mu_i).loss;
         let (chance, side) = pair.returned_to(sides);
         let lobe = pair.rough.table.lobe_density(side, pair.mu_o) * wo.z.abs() * FRAC_1_PI;
-        let single = self.ratios.mean(lanes, |eta| pair.single(eta));
+        let single = pair.single(&self.ratios).dot(*lanes);
         (1.0 - loss) * single + loss * chance * lobe
     }
 
@@ -146,31 +140,32 @@ impl<'a> Pair<'a> {
     }
 
     /// One facet's share of the light, before other facets hide it, per sr of wo.
-    fn single(&self, eta: f64) -> f64 {
-        let joint = if self.wo.z > 0.0 { Some(self.mirrored(eta)) } else { self.refracted(eta) };
-        joint.map_or(0.0, |joint| joint.f * joint.visible)
-    }
-
-    fn mirrored(&self, eta: f64) -> Joint {
+    fn single(&self, ratios: &Ratios) -> SampledSpectrum {
+        if self.wo.z <= 0.0 {
+            return ratios.map(|eta| self.refracted(eta));
+        }
         let h = (self.wi + self.wo).normalize();
         let cos_i = self.wi.dot(h);
-        let visible =
-            self.rough.table.ggx().visible_density(self.wi, h, self.lambda_i) / (4.0 * cos_i);
-        Joint { f: dielectric_reflectance(cos_i, eta), visible }
+        let seen = self.rough.table.ggx().visible_density(self.wi, h, self.lambda_i);
+        ratios.map(|eta| dielectric_reflectance(cos_i, eta)) * (seen / (4.0 * cos_i))
     }
 
-    /// Walter et al., eqs. (16), (17) and (21): dωₕ/dωₒ = η²·|wo·h|/(wi·h + η·wo·h)².
-    fn refracted(&self, eta: f64) -> Option<Joint> {
+    /// Walter et al., eqs. (16), (17) and (21): dωₕ/dωₒ = η²·|wo·h|/(wi·h + η·wo·h)². Free of branches,
+    /// so that lanes go side by side.
+    fn refracted(&self, eta: f64) -> f64 {
         let sum = self.wi + self.wo * eta;
         let length2 = sum.length_squared();
         let h = sum * (length2.sqrt().recip().copysign(sum.z));
-        let (cos_i, cos_o) = (self.wi.dot(h), self.wo.dot(h));
-        if !(cos_i > 0.0 && cos_o < 0.0) {
-            return None;
-        }
+        let (cos_i, cos_o) = (self.wi.dot(h), -self.wo.dot(h));
         let seen = self.rough.table.ggx().visible_density(self.wi, h, self.lambda_i);
-        let visible = seen * eta * eta * -cos_o / length2;
-        Some(Joint { f: 1.0 - dielectric_reflectance(cos_i, eta), visible })
+        // By Snell's law, these are the cosines on both sides of the facet.
+        let [s, p] = polarised_reflectances_between(cos_i, cos_o, eta);
+        let share = (1.0 - 0.5 * (s + p)) * seen * eta * eta * cos_o / length2;
+        if cos_i > 0.0 && cos_o > 0.0 {
+            share
+        } else {
+            0.0
+        }
     }
 
     /// The share of the lost light that goes to wo's side, and that side.
@@ -183,7 +178,20 @@ impl<'a> Pair<'a> {
     }
 
     /// The light that meets more than one facet.
-    fn further(&self, eta: f64) -> f64 {
+    ///
+    /// Between the outermost lanes it is nearly linear in the contrast (η − 1)/(η + 1). To the other side it
+    /// is η² times that of the way back, and so this of it over η is the same both ways.
+    fn further(&self, ratios: &Ratios) -> SampledSpectrum {
+        let (low, high) = ratios.outermost();
+        let scale = |eta: f64| if self.wo.z > 0.0 { 1.0 } else { eta };
+        let [first, last] = [low, high].map(|eta| self.further_at(eta) / scale(eta));
+        let contrast = |eta: f64| (eta - 1.0) / (eta + 1.0);
+        let (from, span) = (contrast(low), contrast(high) - contrast(low));
+        let slope = if span > 0.0 { (last - first) / span } else { 0.0 };
+        ratios.map(|eta| (first + slope * (contrast(eta) - from)) * scale(eta))
+    }
+
+    fn further_at(&self, eta: f64) -> f64 {
         let sides = self.rough.sides(eta);
         let lost = sides.here.shares(self.mu_i).loss;
         let (share, side) = self.returned_to(&sides);

@@ -165,13 +165,10 @@ impl Ratios {
         }
     }
 
-    /// Σ cⱼ·f(ηⱼ) over lane probabilities.
-    fn mean(&self, lanes: &SampledSpectrum, mut f: impl FnMut(f64) -> f64) -> f64 {
-        if self.is_dispersive {
-            self.eta.map(f).dot(*lanes)
-        } else {
-            f(self.eta.0[0])
-        }
+    /// The smallest and the largest η.
+    fn outermost(&self) -> (f64, f64) {
+        let least = self.eta.0.iter().copied().fold(f64::INFINITY, f64::min);
+        (least, self.eta.max())
     }
 
     /// The η of a lane that is chosen by its probability.

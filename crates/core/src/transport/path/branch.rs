@@ -25,8 +25,8 @@ pub(super) struct Branch {
     pub splits: u32,
     /// How many branches have parted from it.
     pub parted: u32,
-    /// Whether it has turned at random.
-    pub has_scattered: bool,
+    /// How many times it has turned at random.
+    pub scatterings: u32,
     /// Which of the emitters that it meets count.
     pub seeks: Seeks,
     /// Whether it has been reflected or turned at random since it started.
@@ -97,7 +97,7 @@ impl Branch {
             depth: 0,
             splits: 0,
             parted: 0,
-            has_scattered: false,
+            scatterings: 0,
             seeks: Seeks::All,
             has_turned: false,
             rivals: 0.0,

@@ -51,7 +51,7 @@ impl<'a> PathWalk<'a> {
     pub(super) fn leave(&mut self, branch: &Branch) {
         let (scene, wavelengths) = (self.scene, self.wavelengths);
         match &mut self.purpose {
-            Purpose::Eye(eye) if eye.part == Part::Scattered && !branch.has_scattered => {}
+            Purpose::Eye(eye) if eye.part == Part::Scattered && branch.scatterings == 0 => {}
             Purpose::Eye(eye) => {
                 scene.background.arriving(&branch.ray, wavelengths, |group, radiance| {
                     eye.gathered.add(scene, wavelengths, group, branch.throughput * radiance);
@@ -134,7 +134,7 @@ impl<'a> PathWalk<'a> {
             branch.splits =
                 branch.splits.min(self.settings.split_depth.saturating_sub(AIMED_SPLITS));
         }
-        branch.has_scattered = true;
+        branch.scatterings += 1;
         branch.came_by = CameBy::Scattering { from: vertex.position, pdf };
         branch.promise = (pdf / own).min(pdf * 4.0 * PI).max(1.0);
         let answer = vertex.answer(wo);
@@ -184,12 +184,12 @@ impl<'a> PathWalk<'a> {
     }
 
     /// How `scatter` aims. What is not aimed weighs more by 1/(1 − share) at each turn: so that after many
-    /// scatterings a few walks do not carry all the light, the share there halves with each event before.
+    /// turns a few walks do not carry all the light, the share halves with each.
     fn aims(&self, branch: &Branch, vertex: &Vertex<'_>, lanes: &SampledSpectrum) -> Aims<'a> {
         if !self.purpose.looks_for_light() {
             return Aims { background: 0.0, guided: 0.0, light: None };
         }
-        let share = if vertex.is_in_body() { 0.5_f64.powi(branch.depth as i32) } else { 1.0 };
+        let share = 0.5_f64.powi(branch.scatterings as i32);
         let background = share * self.scene.background.aim_share(vertex.position);
         let guide = self.purpose.guide().filter(|_| !branch.is_left());
         let region = guide.and_then(|guide| guide.at(vertex.position));

@@ -25,7 +25,8 @@ impl PathWalk<'_> {
         let roughness = material.roughness_at(meeting.hit.point.normal * outward);
         if roughness.is_some() {
             let bsdf = Bsdf::interface(eta, roughness);
-            let vertex = Vertex::on_interface(meeting, bsdf, branch.interior, *beyond);
+            let sides = [branch.interior, *beyond];
+            let vertex = Vertex::on_interface(meeting, bsdf, face, sides);
             return Ways::one(self.scatter(branch, &vertex));
         }
         let [choice, lane, ..] = branch.sampler.next_4d();

@@ -23,7 +23,7 @@ impl PathWalk<'_> {
         };
         let (position, direction, way) = (vertex.position, -branch.ray.direction, branch.way);
         let arrived = Carried::Arrived(Arrival { position, direction, way, weight });
-        let Some(Ground { body, is_matt, normal, shading }) = ground.copied() else {
+        let Some(Ground { body, is_matt, normal, shading, .. }) = ground.copied() else {
             receive(arrived, branch.throughput);
             return;
         };
@@ -58,8 +58,8 @@ impl PathWalk<'_> {
         let takes_all = vertex.is_boundary || branch.is_left() && ground.is_matt;
         branch.seeks = if takes_all { Seeks::Nothing } else { Seeks::Refracted };
         let sent_on = self.weight(branch.throughput * vertex.albedo());
-        let normal = ground.normal;
-        let per_n2 = [normal, -normal].map(|side| {
+        let Ground { body, normal, side, .. } = *ground;
+        let per_n2 = [normal * side, normal * -side].map(|side| {
             let index = self.index(&vertex.leave_along(side).1);
             SampledSpectrum::ONE / (index * index)
         });
@@ -68,10 +68,9 @@ impl PathWalk<'_> {
             return false;
         };
         eye.gathered.met += sent_on;
-        photons.round((vertex.position, normal), ground.body, |landing, irradiance, group| {
+        photons.round((vertex.position, normal), body, |landing, irradiance, group| {
             // The surface may be curved: seen is how it answers where the light landed. There it did so
             // on the true surface, whatever its shading.
-            let side = landing.normal.dot(normal).signum();
             let cos = side * landing.direction.dot(landing.normal);
             if cos == 0.0 || landing.is_straight && !takes_all {
                 return;

@@ -61,7 +61,7 @@ impl PathSettings {
     pub fn of_sharp_light(self, splits: u32) -> Self {
         Self {
             split_depth: self.split_depth.max(splits),
-            roulette_below: self.roulette_below.min(3e-4),
+            roulette_below: self.roulette_below.min(1e-3),
             ..self
         }
     }

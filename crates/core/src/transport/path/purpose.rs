@@ -70,7 +70,7 @@ impl<'a> Purpose<'a> {
         match self {
             Self::Eye(eye) => match eye.part {
                 Part::All | Part::Specular => !branch.is_left(),
-                Part::Scattered => branch.has_scattered && !branch.is_left(),
+                Part::Scattered => branch.scatterings > 0 && !branch.is_left(),
             },
             Self::Light(_) => false,
         }

@@ -4,7 +4,7 @@
 use crate::geometry::SurfacePoint;
 use crate::math::{orthonormal_pair, DMat3, DVec3};
 use crate::matter::{henyey_greenstein, sample_henyey_greenstein, Bsdf};
-use crate::scene::{BodyId, Interior};
+use crate::scene::{BodyId, Face, Interior};
 use crate::spectrum::SampledSpectrum;
 
 use super::Meeting;
@@ -27,16 +27,18 @@ pub(super) struct Ground {
     pub body: BodyId,
     /// Whether it is of opaque matter, and matt or very rough.
     pub is_matt: bool,
-    /// The true normal on the side that the branch comes from.
+    /// The true normal, out of that body.
     pub normal: DVec3,
     /// The shading normal on that side.
     pub shading: DVec3,
+    /// 1 where the branch comes from that side, else −1.
+    pub side: f64,
 }
 
 #[expect(clippy::large_enum_variant, reason = "made at every hit: a box would cost an allocation")]
 enum Place<'a> {
     Surface {
-        body: BodyId,
+        face: Face,
         point: SurfacePoint,
         /// The surface's normal on the branch's side.
         true_normal: DVec3,
@@ -59,30 +61,30 @@ impl<'a> Vertex<'a> {
     #[expect(clippy::large_types_passed_by_value, reason = "moved into the vertex")]
     #[inline]
     pub fn on_surface(meeting: &Meeting, bsdf: Bsdf<'a>, near: Interior) -> Self {
-        Self { is_boundary: false, ..Self::on_interface(meeting, bsdf, near, near) }
+        let face = Face { body: meeting.hit.body, is_entered: meeting.side() > 0.0 };
+        Self { is_boundary: false, ..Self::on_interface(meeting, bsdf, face, [near, near]) }
     }
 
-    /// A vertex on a rough boundary between the media of `near` and `far`.
+    /// A vertex on a rough boundary, the `face` of a body, between the media of `near` and `far`.
     #[expect(clippy::large_types_passed_by_value, reason = "moved into the vertex")]
     #[inline]
-    pub fn on_interface(meeting: &Meeting, bsdf: Bsdf<'a>, near: Interior, far: Interior) -> Self {
+    pub fn on_interface(
+        meeting: &Meeting,
+        bsdf: Bsdf<'a>,
+        face: Face,
+        [near, far]: [Interior; 2],
+    ) -> Self {
         let point = meeting.hit.point;
         let frame = frame(meeting.normal);
         let wi = frame.transpose() * meeting.wi;
         let true_normal = point.normal * meeting.side();
-        let body = meeting.hit.body;
-        let place = Place::Surface { body, point, true_normal, frame, wi, bsdf, far };
+        let place = Place::Surface { face, point, true_normal, frame, wi, bsdf, far };
         Self { position: point.position, near, is_boundary: true, place }
     }
 
     /// A vertex inside a scattering body.
     pub fn in_body(position: DVec3, wi: DVec3, anisotropy: f64, near: Interior) -> Self {
         Self { position, near, is_boundary: false, place: Place::Body { wi, anisotropy } }
-    }
-
-    /// Whether it lies inside a scattering body.
-    pub fn is_in_body(&self) -> bool {
-        matches!(self.place, Place::Body { .. })
     }
 
     /// `wi` of a meeting in the frame of its shading normal.
@@ -168,12 +170,13 @@ impl<'a> Vertex<'a> {
 
     /// How walks from the eye and from lights meet there.
     pub fn ground(&self) -> Option<Ground> {
-        let Place::Surface { body, true_normal, frame, bsdf, .. } = &self.place else {
+        let Place::Surface { face, true_normal, frame, bsdf, .. } = &self.place else {
             return None;
         };
         let is_matt = bsdf.is_broad() && !self.is_boundary;
-        let (normal, shading) = (*true_normal, frame.z_axis);
-        bsdf.spreads().then_some(Ground { body: *body, is_matt, normal, shading })
+        let side = if face.is_entered { 1.0 } else { -1.0 };
+        let (normal, shading) = (*true_normal * side, frame.z_axis * side);
+        bsdf.spreads().then_some(Ground { body: face.body, is_matt, normal, shading, side })
     }
 
     /// Where a ray along `wo` starts, and in which bodies.
