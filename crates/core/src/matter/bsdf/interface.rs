@@ -106,6 +106,44 @@ impl<'a> Interface<'a> {
         }
     }
 
+    /// The density of [`Self::sample_side`] on the side of `wo`.
+    pub(super) fn pdf_of_side(&self, wi: DVec3, wo: DVec3, lanes: &SampledSpectrum) -> f64 {
+        let Some(pair) = self.pair(wi, wo) else {
+            return 0.0;
+        };
+        let sides = &pair.rough.middle;
+        let loss = sides.here.shares(pair.mu_i).loss;
+        let (_, side) = pair.returned_to(sides);
+        let lobe = pair.rough.table.lobe_density(side, pair.mu_o) * wo.z.abs() * FRAC_1_PI;
+        (1.0 - loss) * pair.visible(&self.ratios).dot(*lanes) + loss * lobe
+    }
+
+    /// A direction on one side: every facet mirrors, or every facet that can refracts.
+    pub(super) fn sample_side(
+        &self,
+        wi: DVec3,
+        is_near: bool,
+        lanes: &SampledSpectrum,
+        u: [f64; 3],
+    ) -> Option<DVec3> {
+        let rough = self.rough?;
+        let table = rough.table;
+        let mut choice = u[2];
+        let sides = &rough.middle;
+        let loss = sides.here.shares(table.between_cosines(wi.z)).loss;
+        if happens(loss, &mut choice) {
+            let side = if is_near { sides.here } else { sides.there };
+            let wo = above(table.sample_lobe(side, [u[0], u[1]]));
+            return wo.map(|wo| if is_near { wo } else { -wo });
+        }
+        let h = table.ggx().visible_normal(wi, [u[0], u[1]]);
+        if is_near {
+            return above(reflect(wi, h));
+        }
+        let eta = self.ratios.choose(lanes, &mut choice);
+        refract(wi, h, eta).filter(|wo| wo.z < 0.0)
+    }
+
     /// All light leaves: by one facet or by more.
     pub(super) fn albedo(&self) -> SampledSpectrum {
         if self.is_rough() {
@@ -141,18 +179,38 @@ impl<'a> Pair<'a> {
 
     /// One facet's share of the light, before other facets hide it, per sr of wo.
     fn single(&self, ratios: &Ratios) -> SampledSpectrum {
-        if self.wo.z <= 0.0 {
-            return ratios.map(|eta| self.refracted(eta));
+        if self.wo.z > 0.0 {
+            let (cos_i, visible) = self.mirrored();
+            return ratios.map(|eta| dielectric_reflectance(cos_i, eta)) * visible;
         }
+        ratios.map(|eta| {
+            let [share, visible] = self.refracted(eta);
+            share * visible
+        })
+    }
+
+    /// The density of the facet among those seen, per sr of wo.
+    fn visible(&self, ratios: &Ratios) -> SampledSpectrum {
+        if self.wo.z > 0.0 {
+            SampledSpectrum::splat(self.mirrored().1)
+        } else {
+            ratios.map(|eta| self.refracted(eta)[1])
+        }
+    }
+
+    /// The cosine of incidence on the facet that mirrors, and that facet's density.
+    fn mirrored(&self) -> (f64, f64) {
         let h = (self.wi + self.wo).normalize();
         let cos_i = self.wi.dot(h);
         let seen = self.rough.table.ggx().visible_density(self.wi, h, self.lambda_i);
-        ratios.map(|eta| dielectric_reflectance(cos_i, eta)) * (seen / (4.0 * cos_i))
+        (cos_i, seen / (4.0 * cos_i))
     }
 
+    /// What the facet that refracts lets through, and that facet's density.
+    ///
     /// Walter et al., eqs. (16), (17) and (21): dωₕ/dωₒ = η²·|wo·h|/(wi·h + η·wo·h)². Free of branches,
     /// so that lanes go side by side.
-    fn refracted(&self, eta: f64) -> f64 {
+    fn refracted(&self, eta: f64) -> [f64; 2] {
         let sum = self.wi + self.wo * eta;
         let length2 = sum.length_squared();
         let h = sum * (length2.sqrt().recip().copysign(sum.z));
@@ -160,12 +218,9 @@ impl<'a> Pair<'a> {
         let seen = self.rough.table.ggx().visible_density(self.wi, h, self.lambda_i);
         // By Snell's law, these are the cosines on both sides of the facet.
         let [s, p] = polarised_reflectances_between(cos_i, cos_o, eta);
-        let share = (1.0 - 0.5 * (s + p)) * seen * eta * eta * cos_o / length2;
-        if cos_i > 0.0 && cos_o > 0.0 {
-            share
-        } else {
-            0.0
-        }
+        let is_joined = cos_i > 0.0 && cos_o > 0.0;
+        let found = [1.0 - 0.5 * (s + p), seen * eta * eta * cos_o / length2];
+        found.map(|value| if is_joined { value } else { 0.0 })
     }
 
     /// The share of the lost light that goes to wo's side, and that side.

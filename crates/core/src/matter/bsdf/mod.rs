@@ -131,6 +131,33 @@ impl<'a> Bsdf<'a> {
         }
     }
 
+    /// The density per sr of [`Self::sample_side`] on the side of `wo`.
+    pub fn pdf_of_side(&self, wi: DVec3, wo: DVec3, lanes: &SampledSpectrum) -> f64 {
+        match self {
+            Self::Interface(interface) => interface.pdf_of_side(wi, wo, lanes),
+            _ if wo.z > 0.0 => self.pdf(wi, wo, lanes),
+            _ => 0.0,
+        }
+    }
+
+    /// As [`Self::sample`], but on the near side or on the far side of a boundary alone; only a boundary has
+    /// a far side.
+    pub fn sample_side(
+        &self,
+        wi: DVec3,
+        is_near: bool,
+        lanes: &SampledSpectrum,
+        u: [f64; 3],
+    ) -> Option<DVec3> {
+        match self {
+            Self::Interface(interface) if wi.z > 0.0 => {
+                interface.sample_side(wi, is_near, lanes, u)
+            }
+            _ if is_near => self.sample(wi, lanes, u),
+            _ => None,
+        }
+    }
+
     /// The directional albedo ∫ eval dωₒ per lane: an estimate for rough reflectors,
     /// which takes their facets at the mean cosine of incidence. Zero without anything but a mirror.
     pub fn albedo(&self, wi: DVec3) -> SampledSpectrum {

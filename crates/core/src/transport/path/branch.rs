@@ -121,7 +121,6 @@ impl Branch {
     /// A second branch for the other way on, with random numbers of its own.
     #[must_use]
     pub fn part(&mut self) -> Self {
-        self.splits += 1;
         self.parted += 1;
         Self { sampler: self.sampler.fork(self.parted), ..self.clone() }
     }

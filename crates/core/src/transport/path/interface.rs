@@ -27,7 +27,7 @@ impl PathWalk<'_> {
             let bsdf = Bsdf::interface(eta, roughness);
             let sides = [branch.interior, *beyond];
             let vertex = Vertex::on_interface(meeting, bsdf, face, sides);
-            return Ways::one(self.scatter(branch, &vertex));
+            return self.scatter(branch, &vertex);
         }
         let [choice, lane, ..] = branch.sampler.next_4d();
         let reflected = if eta.is_even() {
@@ -90,7 +90,7 @@ impl PathWalk<'_> {
         let bsdf = material.bsdf(point.position, point.normal, medium_index, self.wavelengths);
         let Some(mirrored) = bsdf.mirror(meeting.cos_i) else {
             let vertex = Vertex::on_surface(meeting, bsdf, branch.interior);
-            return Ways::one(self.scatter(branch, &vertex));
+            return self.scatter(branch, &vertex);
         };
         if !bsdf.scatters() || !self.purpose.scatters() {
             return Ways::one(self.mirror(branch, meeting, &mirrored));
@@ -105,11 +105,13 @@ impl PathWalk<'_> {
         if rest {
             let vertex = Vertex::on_surface(meeting, bsdf, branch.interior);
             if !near {
-                return Ways::one(self.scatter(branch, &vertex));
+                return self.scatter(branch, &vertex);
             }
             let mut other = branch.part();
-            if self.scatter(&mut other, &vertex) {
-                parted = self.wait(other);
+            let ways = self.scatter(&mut other, &vertex);
+            parted = ways.parted;
+            if ways.goes_on {
+                parted += self.wait(other);
             }
         }
         Ways { goes_on: self.mirror(branch, meeting, &mirrored), parted }

@@ -26,6 +26,7 @@ mod interface;
 mod landing;
 mod medium;
 mod purpose;
+mod turning;
 mod vertex;
 
 use crate::math::Ray;
@@ -160,7 +161,7 @@ impl<'a> PathWalk<'a> {
             Event::Scattering(at) => {
                 let wi = -branch.ray.direction;
                 let vertex = Vertex::in_body(at.position, wi, at.anisotropy, branch.interior);
-                let ways = Ways::one(self.scatter(branch, &vertex));
+                let ways = self.scatter(branch, &vertex);
                 self.go_on(branch, &ways, before, None)
             }
             Event::Surface(meeting) => {
@@ -293,6 +294,7 @@ impl<'a> PathWalk<'a> {
     fn divide(&self, branch: &mut Branch, shares: [&SampledSpectrum; 2], u: f64) -> [bool; 2] {
         let [first, second] = shares.map(|share| self.weight(branch.throughput * *share));
         if branch.splits < self.settings.split_depth && first.min(second) > 0.0 {
+            branch.splits += 1;
             return [true, true];
         }
         let probability = first / (first + second);

@@ -142,6 +142,31 @@ impl<'a> Vertex<'a> {
         }
     }
 
+    /// The density of `sample_side` on the side of `wo`, per steradian.
+    pub fn pdf_of_side(&self, wo: DVec3, lanes: &SampledSpectrum) -> f64 {
+        match &self.place {
+            Place::Surface { frame, wi, bsdf, .. } => {
+                bsdf.pdf_of_side(*wi, frame.transpose() * wo, lanes)
+            }
+            Place::Body { .. } => self.pdf(wo, lanes),
+        }
+    }
+
+    /// A direction on the near or the far side of a boundary, more often where more is answered there.
+    pub fn sample_side(
+        &self,
+        is_near: bool,
+        lanes: &SampledSpectrum,
+        u: [f64; 3],
+    ) -> Option<DVec3> {
+        match &self.place {
+            Place::Surface { frame, wi, bsdf, .. } => {
+                bsdf.sample_side(*wi, is_near, lanes, u).map(|wo| (*frame * wo).normalize())
+            }
+            Place::Body { .. } => None,
+        }
+    }
+
     /// Whether `wo`, in front of or behind the shaded surface, is so with the true one too.
     pub fn agrees(&self, wo: DVec3) -> bool {
         match &self.place {
