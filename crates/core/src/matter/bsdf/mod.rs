@@ -135,13 +135,12 @@ impl<'a> Bsdf<'a> {
     pub fn pdf_of_side(&self, wi: DVec3, wo: DVec3, lanes: &SampledSpectrum) -> f64 {
         match self {
             Self::Interface(interface) => interface.pdf_of_side(wi, wo, lanes),
-            _ if wo.z > 0.0 => self.pdf(wi, wo, lanes),
-            _ => 0.0,
+            _ => self.pdf(wi, wo, lanes),
         }
     }
 
-    /// As [`Self::sample`], but on the near side or on the far side of a boundary alone; only a boundary has
-    /// a far side.
+    /// As [`Self::sample`], but on the near side or on the far side of a boundary alone; nothing else has
+    /// sides.
     pub fn sample_side(
         &self,
         wi: DVec3,
@@ -153,8 +152,7 @@ impl<'a> Bsdf<'a> {
             Self::Interface(interface) if wi.z > 0.0 => {
                 interface.sample_side(wi, is_near, lanes, u)
             }
-            _ if is_near => self.sample(wi, lanes, u),
-            _ => None,
+            _ => self.sample(wi, lanes, u),
         }
     }
 

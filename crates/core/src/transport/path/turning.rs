@@ -2,9 +2,10 @@
 //! How a branch is turned at random: as the surface answers, and towards what is bright.
 //!
 //! Where one way is followed, its direction is drawn from one mixture: mostly as the surface answers,
-//! sometimes towards what stands out in the background or is known to shine. Where more are followed, one
-//! goes to each side of a boundary, as its facets mirror and refract, and the aimed ones go besides. Every
-//! one is divided by the sum of the densities of all that could have drawn it: the balance heuristic.
+//! sometimes towards what stands out in the background or is known to shine. At the first turn, and later
+//! while both ways on are followed, aimed ways go besides and not in the place of others, and one goes to
+//! each side of a boundary, as its facets mirror and refract: what is mirrored is little and often bright.
+//! Every way is divided by the sum of the densities of all that could have drawn it: the balance heuristic.
 
 use std::f64::consts::PI;
 
@@ -35,11 +36,10 @@ pub(super) struct Aims<'a> {
 /// What draws a direction.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Technique {
-    /// The surface, as it answers; in all, or to the near or the far side of a boundary.
+    /// The surface, as it answers.
     Surface,
-    Side {
-        is_near: bool,
-    },
+    /// The same, to the near or the far side of a boundary.
+    Side { is_near: bool },
     /// What stands out in the background.
     Background,
     /// What is known of lights.
@@ -111,12 +111,12 @@ impl<'a> PathWalk<'a> {
             return Ways::one(self.turn(branch, &turn, technique, rest));
         }
         branch.splits += 1;
-        let Aims { background, guided, .. } = turn.aims;
+        let has_sides = vertex.is_boundary;
         let mut parted = 0.0;
         for (technique, is_followed) in [
-            (Technique::Side { is_near: true }, true),
-            (Technique::Background, choice < background),
-            (Technique::Guide, rest[0] < guided),
+            (Technique::Side { is_near: true }, has_sides),
+            (Technique::Background, choice < turn.aims.background),
+            (Technique::Guide, rest[0] < turn.aims.guided),
         ] {
             if is_followed {
                 let mut other = branch.part();
@@ -126,9 +126,9 @@ impl<'a> PathWalk<'a> {
                 }
             }
         }
+        let last = if has_sides { Technique::Side { is_near: false } } else { Technique::Surface };
         let [u, v, w, _] = branch.sampler.next_4d();
-        let far = Technique::Side { is_near: false };
-        Ways { goes_on: self.turn(branch, &turn, far, [u, v, w]), parted }
+        Ways { goes_on: self.turn(branch, &turn, last, [u, v, w]), parted }
     }
 
     /// Give a branch a direction; whether it goes on.
@@ -211,7 +211,8 @@ impl<'a> PathWalk<'a> {
         }
         let share = 0.5_f64.powi(branch.scatterings as i32);
         let background = share * self.scene.background.aim_share(vertex.position);
-        let follows_all = vertex.is_boundary && branch.splits < self.settings.split_depth;
+        let splits = branch.scatterings == 0 || branch.splits < self.settings.split_depth;
+        let follows_all = splits && !vertex.is_in_body();
         let guide = self.purpose.guide().filter(|_| !branch.is_left());
         let region = guide.and_then(|guide| guide.at(vertex.position));
         let Some(region) = region else {
@@ -236,12 +237,12 @@ impl<'a> PathWalk<'a> {
         lanes: &SampledSpectrum,
         aims: &Aims<'_>,
     ) -> Densities {
-        let (own, replaced) = if aims.follows_all {
-            (vertex.pdf_of_side(wo, lanes), 0.0)
+        let own = if aims.follows_all && vertex.is_boundary {
+            vertex.pdf_of_side(wo, lanes)
         } else {
-            let own = vertex.pdf(wo, lanes);
-            (own, own)
+            vertex.pdf(wo, lanes)
         };
+        let replaced = if aims.follows_all { 0.0 } else { own };
         let mut all = own;
         if let Some(light) = &aims.light {
             all += aims.guided * (light.pdf(wo) - replaced);

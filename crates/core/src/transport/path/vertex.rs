@@ -87,6 +87,11 @@ impl<'a> Vertex<'a> {
         Self { position, near, is_boundary: false, place: Place::Body { wi, anisotropy } }
     }
 
+    /// Whether it lies inside a scattering body.
+    pub fn is_in_body(&self) -> bool {
+        matches!(self.place, Place::Body { .. })
+    }
+
     /// `wi` of a meeting in the frame of its shading normal.
     pub fn local(meeting: &Meeting) -> DVec3 {
         frame(meeting.normal).transpose() * meeting.wi
