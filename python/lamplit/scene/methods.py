@@ -41,7 +41,10 @@ class PathSettings(Table):
         default=64, ge=1, le=4096, description="surfaces and scatterings in one walk"
     )
     split_depth: int = Field(
-        default=2, ge=0, le=64, description="smooth surfaces where both ways on are followed"
+        default=2,
+        ge=0,
+        le=64,
+        description="surfaces where both ways on are followed; at the first rough one always",
     )
     roulette_below: Share = Field(
         default=3e-3, description="what carries a smaller share goes on by chance only"

@@ -111,23 +111,27 @@ impl<'a> PathWalk<'a> {
             return Ways::one(self.turn(branch, &turn, technique, rest));
         }
         branch.splits += 1;
-        let has_sides = vertex.is_boundary;
+        let Aims { background, guided, .. } = turn.aims;
         let mut parted = 0.0;
-        for (technique, is_followed) in [
-            (Technique::Side { is_near: true }, has_sides),
-            (Technique::Background, choice < turn.aims.background),
-            (Technique::Guide, rest[0] < turn.aims.guided),
-        ] {
-            if is_followed {
-                let mut other = branch.part();
-                let [u, v, w, _] = other.sampler.next_4d();
-                if self.turn(&mut other, &turn, technique, [u, v, w]) {
-                    parted += self.wait(other);
-                }
+        let aimed =
+            [(Technique::Background, choice < background), (Technique::Guide, rest[0] < guided)];
+        for (technique, _) in aimed.into_iter().filter(|(_, is_followed)| *is_followed) {
+            let mut other = branch.part();
+            let [u, v, w, _] = other.sampler.next_4d();
+            if self.turn(&mut other, &turn, technique, [u, v, w]) {
+                parted += self.wait(other);
             }
         }
-        let last = if has_sides { Technique::Side { is_near: false } } else { Technique::Surface };
         let [u, v, w, _] = branch.sampler.next_4d();
+        let mut last = Technique::Surface;
+        if vertex.is_boundary {
+            // The same facet mirrors and refracts: in even light both together have no noise.
+            let mut other = branch.part();
+            if self.turn(&mut other, &turn, Technique::Side { is_near: true }, [u, v, w]) {
+                parted += self.wait(other);
+            }
+            last = Technique::Side { is_near: false };
+        }
         Ways { goes_on: self.turn(branch, &turn, last, [u, v, w]), parted }
     }
 

@@ -114,6 +114,48 @@ fn rough_glass_is_sampled_by_its_density_from_both_sides() {
     }
 }
 
+/// Directions on a side by the octants and heights that they lie in.
+fn bin(wo: DVec3) -> usize {
+    let octant = usize::from(wo.x > 0.0) + 2 * usize::from(wo.y > 0.0);
+    octant + 4 * ((wo.z.abs() * 4.0) as usize).min(3)
+}
+
+#[test]
+fn each_side_of_rough_glass_is_sampled_by_its_density() {
+    // What is drawn on a side, and what is drawn on both, weighted by the ratio of the densities. The
+    // density ends where facets are seen edge on, too steeply for a quadrature.
+    const SAMPLES: usize = 200_000;
+    for alpha in [0.1, 0.5] {
+        let table = AlbedoTable::new(alpha).unwrap();
+        for (eta, cos) in [(1.5, 0.7), (1.0 / 1.5, 0.9), (1.0 / 1.5, 0.7), (1.06, 0.2)] {
+            let (glass, lanes) = (Bsdf::interface(dispersive(eta), Some(&table)), uneven_lanes());
+            let wi = direction(cos, 0.5);
+            for is_near in [true, false] {
+                let mut numbers = Numbers(7);
+                let mut u = || [numbers.next(), numbers.next(), numbers.next()];
+                let mut counts = [0.0; 16];
+                let mut weights = [[0.0; 2]; 16];
+                for _ in 0..SAMPLES {
+                    if let Some(wo) = glass.sample_side(wi, is_near, &lanes, u()) {
+                        assert_eq!(wo.z > 0.0, is_near);
+                        counts[bin(wo)] += 1.0;
+                    }
+                    let drawn = glass.sample(wi, &lanes, u());
+                    if let Some(wo) = drawn.filter(|wo| (wo.z > 0.0) == is_near) {
+                        let weight = glass.pdf_of_side(wi, wo, &lanes) / glass.pdf(wi, wo, &lanes);
+                        weights[bin(wo)][0] += weight;
+                        weights[bin(wo)][1] += weight * weight;
+                    }
+                }
+                for (bin, (count, [sum, squares])) in counts.into_iter().zip(weights).enumerate() {
+                    let z = (count - sum) / (count + squares + 1.0).sqrt();
+                    assert!(z.abs() < LIMIT, "{alpha} {eta} {cos} {is_near} {bin}: {count} {sum}");
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn smooth_surfaces_have_nothing_to_sample() {
     let (wi, lanes) = (direction(0.6, 0.0), even_lanes());
