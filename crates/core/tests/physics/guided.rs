@@ -102,7 +102,8 @@ fn what_is_learned_does_not_depend_on_threads() {
 fn frosted(projection: Projection, panes: &[(f64, [f64; 2])]) -> Scene {
     let mut world = World::dark();
     for (x, group) in [(-5.0, 1), (6.0, 2)] {
-        let lamp = world.add(matt(0.2), disc(DVec3::new(x, 0.0, 0.0), DVec3::Y, 0.8));
+        // So large that walks from the eye meet them often enough to be held against.
+        let lamp = world.add(matt(0.2), disc(DVec3::new(x, 0.0, 0.0), DVec3::Y, 1.6));
         world.shine(lamp, Strength::Flux(by_lane(|lane| 0.2 + 0.15 * lane as f64)), group);
     }
     world.add(matt(0.6), cuboid(DVec3::new(-16.0, -3.0, -12.0), DVec3::new(16.0, -1.0, 12.0)));
