@@ -213,12 +213,10 @@ impl<'a> PathWalk<'a> {
         if !self.purpose.looks_for_light() {
             return Aims::NONE;
         }
+        let share = 0.5_f64.powi(branch.scatterings as i32);
+        let background = share * self.scene.background.aim_share(vertex.position);
         let splits = branch.scatterings == 0 || branch.splits < self.settings.split_depth;
         let follows_all = splits && !vertex.is_in_body();
-        // Besides the others, each is sure at the first turn; in their place, half of them.
-        let most = if follows_all { 2.0 } else { 1.0 };
-        let share = most * 0.5_f64.powi(branch.scatterings as i32);
-        let background = share * self.scene.background.aim_share(vertex.position);
         let guide = self.purpose.guide().filter(|_| !branch.is_left());
         let region = guide.and_then(|guide| guide.at(vertex.position));
         let Some(region) = region else {
