@@ -141,6 +141,20 @@ fn a_soft_box_lights_by_its_form_factor() {
 }
 
 #[test]
+fn a_soft_box_as_bright_as_the_surround_is_not_seen_in_what_loses_no_light() {
+    // A furnace in which every turn is aimed at something: the first besides others, later in their place.
+    let milk = body(flat(1.0), flat(0.0), Some((flat(0.2), 0.3)));
+    for (optics, alpha) in [(milk, 0.0), (glass(1.5), 0.3), (matt(1.0), 0.0)] {
+        let mut world = World::under(Base::Constant(flat(1.0)));
+        world.soft_boxes.push(lamp(DVec3::Y * 40.0, [30.0, 20.0], 1.0));
+        world.add(matt(1.0), Shape::Plane(Plane::new(DVec3::Y * -6.0, DVec3::Y).unwrap()));
+        world.add_rough(optics, alpha, ball(DVec3::ZERO, 5.0));
+        let scene = world.along(DVec3::new(1.0, 30.0, 2.0), -DVec3::Y);
+        Take::of(1 << 13, USUAL).luminance(&scene).is(1.0, 1e-2);
+    }
+}
+
+#[test]
 fn a_thin_lens_blurs_a_spot_out_of_focus_into_its_circle_of_confusion() {
     // Rays from the middle of the picture spread, d mm away, over a disc of the diameter
     // A·|1 − d/f|. Its share that the spot of radius 1.2 mm fills is seen.

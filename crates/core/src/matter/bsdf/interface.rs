@@ -76,29 +76,19 @@ impl<'a> Interface<'a> {
         let Some(pair) = self.pair(wi, wo) else {
             return 0.0;
         };
-        let sides = &pair.rough.middle;
-        let loss = sides.here.shares(pair.mu_i).loss;
-        let (chance, side) = pair.returned_to(sides);
-        let lobe = pair.rough.table.lobe_density(side, pair.mu_o) * wo.z.abs() * FRAC_1_PI;
-        let single = pair.single(&self.ratios).dot(*lanes);
-        (1.0 - loss) * single + loss * chance * lobe
+        let [loss, chance, lobe] = pair.drawn_as_lost();
+        (1.0 - loss) * pair.single(&self.ratios).dot(*lanes) + loss * chance * lobe
     }
 
     pub(super) fn sample(&self, wi: DVec3, lanes: &SampledSpectrum, u: [f64; 3]) -> Option<DVec3> {
         let rough = self.rough?;
-        let table = rough.table;
         let mut choice = u[2];
-        let sides = &rough.middle;
-        let loss = sides.here.shares(table.between_cosines(wi.z)).loss;
-        if happens(loss, &mut choice) {
-            return if happens(sides.through, &mut choice) {
-                above(table.sample_lobe(sides.there, [u[0], u[1]])).map(|wo| -wo)
-            } else {
-                above(table.sample_lobe(sides.here, [u[0], u[1]]))
-            };
+        if happens(rough.loss(wi), &mut choice) {
+            let is_near = !happens(rough.middle.through, &mut choice);
+            return rough.sample_lost(is_near, u);
         }
         let eta = self.ratios.choose(lanes, &mut choice);
-        let h = table.ggx().visible_normal(wi, [u[0], u[1]]);
+        let h = rough.table.ggx().visible_normal(wi, [u[0], u[1]]);
         if happens(dielectric_reflectance(wi.dot(h), eta), &mut choice) {
             above(reflect(wi, h))
         } else {
@@ -111,10 +101,7 @@ impl<'a> Interface<'a> {
         let Some(pair) = self.pair(wi, wo) else {
             return 0.0;
         };
-        let sides = &pair.rough.middle;
-        let loss = sides.here.shares(pair.mu_i).loss;
-        let (_, side) = pair.returned_to(sides);
-        let lobe = pair.rough.table.lobe_density(side, pair.mu_o) * wo.z.abs() * FRAC_1_PI;
+        let [loss, _, lobe] = pair.drawn_as_lost();
         (1.0 - loss) * pair.visible(&self.ratios).dot(*lanes) + loss * lobe
     }
 
@@ -127,16 +114,11 @@ impl<'a> Interface<'a> {
         u: [f64; 3],
     ) -> Option<DVec3> {
         let rough = self.rough?;
-        let table = rough.table;
         let mut choice = u[2];
-        let sides = &rough.middle;
-        let loss = sides.here.shares(table.between_cosines(wi.z)).loss;
-        if happens(loss, &mut choice) {
-            let side = if is_near { sides.here } else { sides.there };
-            let wo = above(table.sample_lobe(side, [u[0], u[1]]));
-            return wo.map(|wo| if is_near { wo } else { -wo });
+        if happens(rough.loss(wi), &mut choice) {
+            return rough.sample_lost(is_near, u);
         }
-        let h = table.ggx().visible_normal(wi, [u[0], u[1]]);
+        let h = rough.table.ggx().visible_normal(wi, [u[0], u[1]]);
         if is_near {
             return above(reflect(wi, h));
         }
@@ -167,7 +149,30 @@ impl<'a> Interface<'a> {
     }
 }
 
+impl Rough<'_> {
+    /// The share of the light from `wi` that one facet does not send on.
+    fn loss(&self, wi: DVec3) -> f64 {
+        self.middle.here.shares(self.table.between_cosines(wi.z)).loss
+    }
+
+    /// A direction of that light on one side.
+    fn sample_lost(&self, is_near: bool, u: [f64; 3]) -> Option<DVec3> {
+        let side = if is_near { self.middle.here } else { self.middle.there };
+        let wo = above(self.table.sample_lobe(side, [u[0], u[1]]));
+        wo.map(|wo| if is_near { wo } else { -wo })
+    }
+}
+
 impl<'a> Pair<'a> {
+    /// The share of the light that one facet does not send on, the chance that it goes to wo's side, and the
+    /// density of wo there, as they are drawn.
+    fn drawn_as_lost(&self) -> [f64; 3] {
+        let Rough { table, middle, .. } = &self.rough;
+        let (chance, side) = self.returned_to(middle);
+        let lobe = table.lobe_density(side, self.mu_o) * self.wo.z.abs() * FRAC_1_PI;
+        [middle.here.shares(self.mu_i).loss, chance, lobe]
+    }
+
     fn masking(&self) -> f64 {
         let lambda_o = self.rough.table.ggx().lambda(self.wo);
         if self.wo.z > 0.0 {

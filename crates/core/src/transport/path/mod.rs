@@ -48,7 +48,7 @@ pub use purpose::{Carried, Eye, Part, Receive};
 pub struct PathSettings {
     /// How many surfaces and scatterings one walk may meet.
     pub max_depth: u32,
-    /// How many times both ways on at a smooth surface are followed, from the eye on.
+    /// How many times both ways on at a surface are followed, from the eye on; at the first rough one always.
     pub split_depth: u32,
     /// A branch that carries less than this share of the visible light is followed by chance only.
     pub roulette_below: f64,
