@@ -36,14 +36,14 @@ use tree::Tree;
 const TO_LEARN: u64 = 0x2545_F491_4F6C_DD1D;
 /// Walks that learn are independent of threads in so many batches.
 const BATCHES: u64 = 32;
-/// How many arrivals are enough, and after how many segments there is an end of it; light that is walled
-/// in where it starts takes none, and ends by its paths.
+/// How many arrivals are enough, and after how many segments there is an end of it, where each round doubles
+/// what was walked before; light that is walled in where it starts takes none, and ends by its paths.
 const ENOUGH: usize = 1 << 16;
-const MOST_SEGMENTS: u64 = 1 << 20;
+const MOST_SEGMENTS: u64 = 1 << 19;
 const MOST_PATHS: u32 = 1 << 15;
 /// After so many segments, where only one in so many ends where a walk may be guided, guiding matters
 /// little.
-const SOON: u64 = 1 << 18;
+const SOON: u64 = 1 << 16;
 const RARE: u64 = 64;
 /// The most arrivals of a region, and the fewest that one can learn from.
 const MOST: usize = 400;
