@@ -199,7 +199,7 @@ def draw(found: Mapping[str, Any], path: Path) -> None:
     import matplotlib as mpl
 
     mpl.use("Agg")
-    from matplotlib import pyplot
+    from matplotlib import pyplot, ticker
 
     rows = found["rows"]
     figure, axes = pyplot.subplots(
@@ -217,6 +217,9 @@ def draw(found: Mapping[str, Any], path: Path) -> None:
                     label=name if seed == 0 else None,
                 )
         panel.set(title=row["lamp"], xlabel="core seconds")
+        panel.xaxis.set_major_locator(ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
+        panel.xaxis.set_major_formatter(ticker.StrMethodFormatter("{x:g}"))
+        panel.xaxis.set_minor_formatter(ticker.NullFormatter())
         panel.grid(which="both", linewidth=0.3)
     axes[0, 0].set_ylabel("tone: relative MSE of Y/(Y + mean)")
     axes[0, 0].legend(frameon=False)
