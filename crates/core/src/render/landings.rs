@@ -90,7 +90,8 @@ impl<'a> Landings<'a> {
         let fewer = each / f64::from(OF_TRIAL);
         let apart = trial.spacing(PHOTONS) / (PHOTONS as f64 * fewer).sqrt();
         own.first_radius = pixels.max(apart);
-        own.crowd = Arc::new(Photons::new(trial, own.first_radius, 1.0, Arc::default()).crowd());
+        let trial = Photons::new(trial, own.first_radius, 1.0, Arc::default());
+        own.crowd = Arc::new(trial.crowd(scene));
         Ok(own)
     }
 

@@ -212,7 +212,7 @@ impl Scene {
 
     /// The opaque body that the ray starts in: one of those that enclose a volume. An opaque mesh may
     /// be a sheet, and counts as one.
-    fn opaque_round(&self, ray: &Ray) -> Option<BodyId> {
+    pub fn opaque_round(&self, ray: &Ray) -> Option<BodyId> {
         let leaves = |primitive: &Primitive| {
             let met = primitive.closest_hit(ray);
             met.is_some_and(|point| point.normal.dot(ray.direction) > 0.0)

@@ -15,12 +15,12 @@
 //! Photon Mapping: A Probabilistic Approach", ACM TOG 30(3), 2011 (radii that shrink by themselves).
 
 use std::collections::HashMap;
-use std::f64::consts::PI;
 use std::ops::Range;
 use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use super::disc::{Crowd, Disc};
 use super::flux::LightWalk;
 use super::ledger::Ledger;
 use super::path::Carried;
@@ -34,15 +34,12 @@ use crate::spectrum::{SampledSpectrum, SampledWavelengths};
 const TO_LAND: u64 = 0x6A09_E667_F3BC_C909;
 /// Walks that land are independent of threads in so many batches.
 const BATCHES: u32 = 16;
-/// A disc that more photons than these are expected in is made smaller.
-const CROWD: f64 = 32.0;
+/// So many of the discs in a cell tell whether surfaces end near it; each looks in four directions, turned by
+/// a share of a turn that leaves no gaps.
+const LOOKED_AT: usize = 8;
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
 /// A first disc is no larger than this share of the middle of its body's three extents.
 const OF_BODY: f64 = 0.25;
-/// What lies farther above or below a surface than this share of a disc's radius is on another one.
-const THICKNESS: f64 = 0.25;
-/// Surfaces whose normals are farther apart than this cosine are not the same.
-const SAME_SURFACE: f64 = 0.9;
-const M2_PER_MM2: f64 = 1e-6;
 
 /// Where light landed.
 #[derive(Clone, Copy, Debug)]
@@ -221,26 +218,35 @@ impl Photons {
         self.landed.segments
     }
 
-    /// Where more lands than it takes, for other walks.
-    pub fn crowd(&self) -> Crowd {
+    /// Where more lands than it takes, and where surfaces end, for other walks.
+    pub fn crowd(&self, scene: &Scene) -> Crowd {
         let per_path = 1.0 / f64::from(self.landed.paths.max(1));
         // Of a flat surface, a cell holds about its square.
         let density = |own: &Range<usize>| own.len() as f64 * per_path / self.radius.powi(2);
-        let all = self.cells.iter().map(|(cell, own)| (*cell, density(own))).collect();
-        Crowd { width: self.radius, densities: all, most: self.landed.largest_discs() }
+        let densities = self.cells.iter().map(|(cell, own)| (*cell, density(own))).collect();
+        let most = self.landed.largest_discs();
+        let is_cut = |own: &Range<usize>| {
+            own.clone().step_by(own.len().div_ceil(LOOKED_AT)).any(|at| {
+                let Landing { position, normal, body, .. } = self.landed.photons[at].at;
+                let radius = most.get(&body).map_or(self.radius, |most| most.min(self.radius));
+                let disc = Disc { position, normal, body, radius, is_whole: false };
+                disc.is_cut(scene, at as f64 * GOLDEN)
+            })
+        };
+        let edges = self.cells.par_iter().filter(|(_, own)| is_cut(own)).map(|(cell, _)| *cell);
+        Crowd { width: self.radius, densities, edges: edges.collect(), most }
     }
 
-    /// Hand on what landed round `position` on a surface of this `normal` and `body`: where it came
-    /// from, its flux per m² there, and its light group.
-    pub fn round(
-        &self,
-        (position, normal): (DVec3, DVec3),
-        body: BodyId,
-        mut found: impl FnMut(&Landing, SampledSpectrum, usize),
-    ) {
-        let radius =
-            self.radius.min(self.crowd.radius(position, body, (self.shrunk, self.landed.paths)));
-        let r2 = radius * radius;
+    /// The disc round a place on the surface of a body, with the true `normal` out of it.
+    pub fn disc(&self, position: DVec3, normal: DVec3, body: BodyId) -> Disc {
+        let crowded = self.crowd.radius(position, body, (self.shrunk, self.landed.paths));
+        let is_whole = self.crowd.is_inland(position);
+        Disc { position, normal, body, radius: self.radius.min(crowded), is_whole }
+    }
+
+    /// Hand on what landed on a disc: where it came from, its flux per m² there, and its light group.
+    pub fn on(&self, disc: &Disc, mut found: impl FnMut(&Landing, SampledSpectrum, usize)) {
+        let Disc { position, radius, .. } = *disc;
         let [low, high] = [-radius, radius].map(|r| cell(position + r, self.radius));
         let steps = high.wrapping_sub(low) + IVec3::ONE;
         for index in 0..steps.element_product() {
@@ -250,15 +256,11 @@ impl Photons {
                 continue;
             };
             for index in own.clone() {
-                let away = self.places[index] - position;
-                let d2 = away.length_squared() / r2;
-                if d2 >= 1.0 || away.dot(normal).abs() >= THICKNESS * radius {
+                let Some(per_m2) = disc.weight(self.places[index]) else {
                     continue;
-                }
+                };
                 let Photon { at, flux, group } = &self.landed.photons[index];
-                if at.normal.dot(normal) > SAME_SURFACE {
-                    // Most in the middle, none at the rim; 1 over the disc.
-                    let per_m2 = 2.0 * (1.0 - d2) / (PI * r2 * M2_PER_MM2);
+                if disc.is_along(at.normal) {
                     found(at, *flux * per_m2, *group);
                 }
             }
@@ -266,27 +268,6 @@ impl Photons {
     }
 }
 
-/// Where light lands closely, as other walks have shown: what decides about discs must not be what
-/// is met in them.
-#[derive(Clone, Debug, Default)]
-pub struct Crowd {
-    width: f64,
-    /// How much lands per mm² and walk, by cells.
-    densities: HashMap<IVec3, f64>,
-    /// The largest radius of a first disc on each body, as far as any light landed there.
-    most: HashMap<BodyId, f64>,
-}
-
-impl Crowd {
-    /// The radius of a disc that is small for its body, and on which no more of so many walks land than
-    /// it takes.
-    fn radius(&self, position: DVec3, body: BodyId, (shrunk, paths): (f64, u32)) -> f64 {
-        let most = self.most.get(&body).map_or(f64::INFINITY, |most| most * shrunk);
-        let density = self.densities.get(&cell(position, self.width));
-        density.map_or(most, |density| (CROWD / (PI * density * f64::from(paths))).sqrt().min(most))
-    }
-}
-
-fn cell(position: DVec3, width: f64) -> IVec3 {
+pub(super) fn cell(position: DVec3, width: f64) -> IVec3 {
     (position / width).floor().as_ivec3()
 }

@@ -14,7 +14,7 @@ use lamplit_core::scene::{
 };
 use lamplit_core::spectrum::{SpectralTable, LANES};
 
-pub use crate::measure::{all_are, fresnel, Estimate, Take, EXACT, SINGLE, STEADY, USUAL, WHOLE};
+pub use crate::measure::{all_are, fresnel, mean_luminance, mean_over_seeds, Estimate, Take, EXACT, SINGLE, STEADY, USUAL, WHOLE};
 
 /// The same value on all lanes.
 pub fn flat(value: f64) -> SpectralTable {
@@ -41,6 +41,11 @@ pub fn body(
     let scattering =
         scattering.map(|(coefficient, anisotropy)| Scattering { coefficient, anisotropy });
     Optics::Dielectric(Dielectric { index, index_d: 1.5, absorption, scattering })
+}
+
+/// Aluminium, about.
+pub fn aluminium() -> Optics {
+    Optics::Conductor { n: flat(0.9), k: flat(4.0), factor: 1.0, lacquer: None }
 }
 
 /// A matt surface.

@@ -24,6 +24,8 @@ mod goniometer;
 #[cfg(test)]
 mod guided;
 #[cfg(test)]
+mod landed;
+#[cfg(test)]
 mod light_sources;
 #[cfg(test)]
 mod measure;

@@ -132,6 +132,14 @@ impl Estimate {
     pub fn is(self, expected: f64, fine: f64) {
         all_are(&[self], |_| expected, fine);
     }
+
+    /// Within 3σ of `other`, with the σ of both less than `fine` of it.
+    #[track_caller]
+    pub fn is_as(self, other: Self, fine: f64) {
+        let sigma = self.sigma.hypot(other.sigma);
+        assert!((self.mean - other.mean).abs() < 3.0 * sigma, "{self:?} {other:?}");
+        assert!(sigma < fine * other.mean, "{self:?} {other:?}");
+    }
 }
 
 /// Each within `z`σ of what is expected, with σ at most `fine`·expected; z is 3 for one and grows so
@@ -159,4 +167,18 @@ pub fn fresnel(degrees: f64, eta: f64) -> f64 {
     let s = (i - t).sin() / (i + t).sin();
     let p = (i - t).tan() / (i + t).tan();
     f64::midpoint(s * s, p * p)
+}
+
+/// The mean luminance of a picture.
+pub fn mean_luminance(scene: &Scene, settings: RenderSettings) -> f64 {
+    let settings = RenderSettings { bands_per_lane: 0, ..settings };
+    let film = render(scene, &settings, &Progress::default()).unwrap().film;
+    film.pixels.iter().map(|pixel| pixel.mean()[1]).sum::<f64>() / film.pixels.len() as f64
+}
+
+/// The mean luminance of square pictures of so many pixels a side, over eight seeds.
+pub fn mean_over_seeds(scene: &Scene, side: u32, take: &Take) -> Estimate {
+    let usual = RenderSettings { width: side, height: side, ..take.settings() };
+    let of_seed = |seed| mean_luminance(scene, RenderSettings { seed, ..usual.clone() });
+    Estimate::of((1..=8).map(of_seed).collect::<Vec<_>>().iter())
 }

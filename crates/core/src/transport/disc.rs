@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0 OR MIT
+//! [`Disc`]: the part of a surface round a place on which walks from the eye take what landed.
+//!
+//! Beyond a surface's edge nothing lands, and what landed on a disc there is that of a smaller area. A
+//! place that is drawn on the disc is on the surface with the chance p that is this area's share; so the
+//! number of places that are drawn until one is has the mean 1/p, and makes good what is not there.
+//!
+//! Source: T. Booth, "Unbiased Monte Carlo Estimation of the Reciprocal of an Integral", Nuclear Science and
+//! Engineering 156(3), 2007.
+
+use std::collections::{HashMap, HashSet};
+use std::f64::consts::{PI, TAU};
+
+use super::photons::cell;
+use crate::math::{orthonormal_pair, DVec3, IVec3, Ray};
+use crate::scene::{BodyId, Face, Scene};
+
+/// A disc that more photons than these are expected in is made smaller.
+const CROWD: f64 = 32.0;
+/// What lies farther above or below a surface than this share of a disc's radius is on another one.
+const THICKNESS: f64 = 0.25;
+/// Surfaces whose normals are farther apart than this cosine are not the same.
+const SAME_SURFACE: f64 = 0.9;
+/// The most surfaces above one another in one place of a disc that are looked through.
+const MOST_LAYERS: usize = 16;
+const M2_PER_MM2: f64 = 1e-6;
+
+/// The part of a surface round a place on which walks from the eye take what landed.
+#[derive(Clone, Copy, Debug)]
+pub struct Disc {
+    /// Its middle, in mm.
+    pub position: DVec3,
+    /// The surface's true normal there, out of its body.
+    pub normal: DVec3,
+    /// The body whose surface it is.
+    pub body: BodyId,
+    /// In mm.
+    pub radius: f64,
+    /// Whether it is known to be far from all edges.
+    pub is_whole: bool,
+}
+
+impl Disc {
+    /// How much what landed at `place` counts, per m²: most in the middle, nothing at the rim; 1 over the
+    /// disc. Nothing where it is not on the disc.
+    pub fn weight(&self, place: DVec3) -> Option<f64> {
+        let away = place - self.position;
+        let r2 = self.radius * self.radius;
+        let d2 = away.length_squared() / r2;
+        let is_on = d2 < 1.0 && away.dot(self.normal).abs() < THICKNESS * self.radius;
+        is_on.then(|| 2.0 * (1.0 - d2) / (PI * r2 * M2_PER_MM2))
+    }
+
+    /// Whether a surface with this normal, out of its body, goes on as the disc's does.
+    pub fn is_along(&self, normal: DVec3) -> bool {
+        normal.dot(self.normal) > SAME_SURFACE
+    }
+
+    /// Whether there is any surface at a place that is drawn on the disc, as often as what landed there
+    /// counts, for `u` uniform in the unit square.
+    pub fn is_there(&self, scene: &Scene, [u, v]: [f64; 2]) -> bool {
+        self.reaches(scene, (1.0 - (1.0 - u).sqrt()).sqrt(), v)
+    }
+
+    /// Whether it reaches beyond an edge in one of four directions, the first of them a `turn` of its own.
+    pub fn is_cut(&self, scene: &Scene, turn: f64) -> bool {
+        const NEAR_RIM: f64 = 0.9;
+        (0..4).any(|side| !self.reaches(scene, NEAR_RIM, turn + 0.25 * f64::from(side)))
+    }
+
+    /// Whether there is any surface so far from the middle, in radii, in a direction in turns.
+    fn reaches(&self, scene: &Scene, away: f64, turn: f64) -> bool {
+        let (tangent, bitangent) = orthonormal_pair(self.normal);
+        let (sin, cos) = (TAU * turn).sin_cos();
+        let away = self.radius * away;
+        let height = THICKNESS * self.radius;
+        let above = self.normal * height + (tangent * cos + bitangent * sin) * away;
+        let origin = self.position + above;
+        let mut ray = Ray { origin, direction: -self.normal, t_max: 2.0 * height };
+        for _ in 0..MOST_LAYERS {
+            let Some(place) = scene.first_place(&ray) else {
+                return false;
+            };
+            let point = &place.hit.point;
+            let is_along = self.is_along(point.normal) || self.is_along(-point.normal);
+            let is_own = |face: &Face| face.body == self.body && face.is_entered;
+            if is_along && place.faces().iter().any(is_own) {
+                // On what something stands, nothing lands.
+                let up = Ray::endless(point.leave_along(self.normal), self.normal);
+                return scene.opaque_round(&up).is_none();
+            }
+            ray.origin = point.leave_along(ray.direction);
+            ray.t_max -= point.t;
+        }
+        false
+    }
+}
+
+/// Where light lands closely, as other walks have shown: what decides about discs must not be what
+/// is met in them.
+#[derive(Clone, Debug, Default)]
+pub struct Crowd {
+    pub(super) width: f64,
+    /// How much lands per mm² and walk, by cells.
+    pub(super) densities: HashMap<IVec3, f64>,
+    /// Those of these cells in which discs were seen that reach beyond an edge.
+    pub(super) edges: HashSet<IVec3>,
+    /// The largest radius of a first disc on each body, as far as any light landed there.
+    pub(super) most: HashMap<BodyId, f64>,
+}
+
+impl Crowd {
+    /// Whether discs at a place are known to end before all edges.
+    pub(super) fn is_inland(&self, position: DVec3) -> bool {
+        let cell = cell(position, self.width);
+        self.densities.contains_key(&cell) && !self.edges.contains(&cell)
+    }
+
+    /// The radius of a disc that is small for its body, and on which no more of so many walks land than
+    /// it takes.
+    pub(super) fn radius(&self, position: DVec3, body: BodyId, (shrunk, paths): (f64, u32)) -> f64 {
+        let most = self.most.get(&body).map_or(f64::INFINITY, |most| most * shrunk);
+        let density = self.densities.get(&cell(position, self.width));
+        density.map_or(most, |density| (CROWD / (PI * density * f64::from(paths))).sqrt().min(most))
+    }
+}
