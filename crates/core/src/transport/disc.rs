@@ -8,11 +8,13 @@
 //! Source: T. Booth, "Unbiased Monte Carlo Estimation of the Reciprocal of an Integral", Nuclear Science and
 //! Engineering 156(3), 2007.
 
-use std::collections::{HashMap, HashSet};
 use std::f64::consts::{PI, TAU};
 
-use super::photons::cell;
+use rustc_hash::FxHashMap;
+
+use super::tally::Tally;
 use crate::math::{orthonormal_pair, DVec3, IVec3, Ray};
+use crate::sampling::PixelSampler;
 use crate::scene::{BodyId, Face, Scene};
 
 /// A disc that more photons than these are expected in is made smaller.
@@ -21,6 +23,8 @@ const CROWD: f64 = 32.0;
 const THICKNESS: f64 = 0.25;
 /// Surfaces whose normals are farther apart than this cosine are not the same.
 const SAME_SURFACE: f64 = 0.9;
+/// The most places that are drawn on a disc until one is on its surface.
+const MOST_DRAWN: u32 = 64;
 /// The most surfaces above one another in one place of a disc that are looked through.
 const MOST_LAYERS: usize = 16;
 const M2_PER_MM2: f64 = 1e-6;
@@ -56,9 +60,26 @@ impl Disc {
         normal.dot(self.normal) > SAME_SURFACE
     }
 
+    /// Its area in those of its part that is there: a whole number, right on average.
+    pub fn area(&self, scene: &Scene, sampler: &mut PixelSampler, tally: &mut Tally) -> f64 {
+        if self.is_whole {
+            return 1.0;
+        }
+        for drawn in (0..MOST_DRAWN).step_by(2) {
+            let [a, b, c, d] = sampler.next_4d();
+            for (more, u) in [(1, [a, b]), (2, [c, d])] {
+                tally.shadow_rays += 1;
+                if self.is_there(scene, u) {
+                    return f64::from(drawn + more);
+                }
+            }
+        }
+        f64::from(MOST_DRAWN)
+    }
+
     /// Whether there is any surface at a place that is drawn on the disc, as often as what landed there
     /// counts, for `u` uniform in the unit square.
-    pub fn is_there(&self, scene: &Scene, [u, v]: [f64; 2]) -> bool {
+    fn is_there(&self, scene: &Scene, [u, v]: [f64; 2]) -> bool {
         self.reaches(scene, (1.0 - (1.0 - u).sqrt()).sqrt(), v)
     }
 
@@ -96,31 +117,40 @@ impl Disc {
     }
 }
 
-/// Where light lands closely, as other walks have shown: what decides about discs must not be what
-/// is met in them.
+/// Where light lands closely and where surfaces end, as other walks have shown: what decides about discs must
+/// not be what is met in them.
 #[derive(Clone, Debug, Default)]
 pub struct Crowd {
+    /// How wide its cells are, in mm.
     pub(super) width: f64,
-    /// How much lands per mm² and walk, by cells.
-    pub(super) densities: HashMap<IVec3, f64>,
-    /// Those of these cells in which discs were seen that reach beyond an edge.
-    pub(super) edges: HashSet<IVec3>,
+    pub(super) cells: FxHashMap<IVec3, Cell>,
     /// The largest radius of a first disc on each body, as far as any light landed there.
-    pub(super) most: HashMap<BodyId, f64>,
+    pub(super) most: FxHashMap<BodyId, f64>,
+}
+
+/// What is known of the discs in a cell where light landed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cell {
+    /// How much lands per mm² and walk.
+    pub density: f64,
+    /// Whether discs were seen that reach beyond an edge.
+    pub has_edges: bool,
 }
 
 impl Crowd {
-    /// Whether discs at a place are known to end before all edges.
-    pub(super) fn is_inland(&self, position: DVec3) -> bool {
-        let cell = cell(position, self.width);
-        self.densities.contains_key(&cell) && !self.edges.contains(&cell)
-    }
-
-    /// The radius of a disc that is small for its body, and on which no more of so many walks land than
-    /// it takes.
-    pub(super) fn radius(&self, position: DVec3, body: BodyId, (shrunk, paths): (f64, u32)) -> f64 {
+    /// The largest radius of a disc that is small for its body, and on which no more of so many walks land
+    /// than it takes; and whether discs there are known to end before all edges.
+    pub(super) fn disc(&self, at: DVec3, body: BodyId, (shrunk, paths): (f64, u32)) -> (f64, bool) {
         let most = self.most.get(&body).map_or(f64::INFINITY, |most| most * shrunk);
-        let density = self.densities.get(&cell(position, self.width));
-        density.map_or(most, |density| (CROWD / (PI * density * f64::from(paths))).sqrt().min(most))
+        let Some(known) = self.cells.get(&cell(at, self.width)) else {
+            return (most, false);
+        };
+        let uncrowded = (CROWD / (PI * known.density * f64::from(paths))).sqrt();
+        (most.min(uncrowded), !known.has_edges)
     }
+}
+
+/// The cell of a grid that a place is in.
+pub(super) fn cell(position: DVec3, width: f64) -> IVec3 {
+    (position / width).floor().as_ivec3()
 }

@@ -14,13 +14,13 @@
 //! "Stochastic Progressive Photon Mapping", ACM TOG 28(5), 2009; C. Knaus and M. Zwicker, "Progressive
 //! Photon Mapping: A Probabilistic Approach", ACM TOG 30(3), 2011 (radii that shrink by themselves).
 
-use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
 
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 
-use super::disc::{Crowd, Disc};
+use super::disc::{cell, Cell, Crowd, Disc};
 use super::flux::LightWalk;
 use super::ledger::Ledger;
 use super::path::Carried;
@@ -135,8 +135,8 @@ impl Landed {
 
     /// The largest radius of a first disc on each body: a share of its middle extent, as far as light landed
     /// there.
-    fn largest_discs(&self) -> HashMap<BodyId, f64> {
-        let mut boxes = HashMap::<BodyId, [DVec3; 2]>::new();
+    fn largest_discs(&self) -> FxHashMap<BodyId, f64> {
+        let mut boxes = FxHashMap::<BodyId, [DVec3; 2]>::default();
         for Photon { at: Landing { position, body, .. }, .. } in &self.photons {
             let [low, high] = boxes.entry(*body).or_insert([*position; 2]);
             (*low, *high) = (low.min(*position), high.max(*position));
@@ -174,7 +174,7 @@ pub struct Photons {
     /// Where each of them landed, once more and close together: most of them are only looked at for that.
     places: Vec<DVec3>,
     /// Which of them lie in each cell of a grid; cells are as wide as a disc's radius.
-    cells: HashMap<IVec3, Range<usize>>,
+    cells: FxHashMap<IVec3, Range<usize>>,
     radius: f64,
     /// How much smaller discs are than the first ones.
     shrunk: f64,
@@ -192,7 +192,7 @@ impl Photons {
         order.par_sort_unstable();
         landed.photons = order.par_iter().map(|(_, at)| landed.photons[*at]).collect();
         let places = landed.photons.par_iter().map(|photon| photon.at.position).collect();
-        let mut cells = HashMap::new();
+        let mut cells = FxHashMap::default();
         let mut first = 0;
         for run in order.chunk_by(|(a, _), (b, _)| a == b) {
             cells.insert(IVec3::from(run[0].0), first..first + run.len());
@@ -221,27 +221,27 @@ impl Photons {
     /// Where more lands than it takes, and where surfaces end, for other walks.
     pub fn crowd(&self, scene: &Scene) -> Crowd {
         let per_path = 1.0 / f64::from(self.landed.paths.max(1));
-        // Of a flat surface, a cell holds about its square.
-        let density = |own: &Range<usize>| own.len() as f64 * per_path / self.radius.powi(2);
-        let densities = self.cells.iter().map(|(cell, own)| (*cell, density(own))).collect();
         let most = self.landed.largest_discs();
-        let is_cut = |own: &Range<usize>| {
-            own.clone().step_by(own.len().div_ceil(LOOKED_AT)).any(|at| {
-                let Landing { position, normal, body, .. } = self.landed.photons[at].at;
-                let radius = most.get(&body).map_or(self.radius, |most| most.min(self.radius));
-                let disc = Disc { position, normal, body, radius, is_whole: false };
-                disc.is_cut(scene, at as f64 * GOLDEN)
-            })
+        let is_cut = |at: usize| {
+            let Landing { position, normal, body, .. } = self.landed.photons[at].at;
+            let radius = most.get(&body).map_or(self.radius, |most| most.min(self.radius));
+            let disc = Disc { position, normal, body, radius, is_whole: false };
+            disc.is_cut(scene, at as f64 * GOLDEN)
         };
-        let edges = self.cells.par_iter().filter(|(_, own)| is_cut(own)).map(|(cell, _)| *cell);
-        Crowd { width: self.radius, densities, edges: edges.collect(), most }
+        let known = |own: &Range<usize>| Cell {
+            // Of a flat surface, a cell holds about its square.
+            density: own.len() as f64 * per_path / self.radius.powi(2),
+            has_edges: own.clone().step_by(own.len().div_ceil(LOOKED_AT)).any(is_cut),
+        };
+        let cells = self.cells.par_iter().map(|(cell, own)| (*cell, known(own))).collect();
+        Crowd { width: self.radius, cells, most }
     }
 
     /// The disc round a place on the surface of a body, with the true `normal` out of it.
     pub fn disc(&self, position: DVec3, normal: DVec3, body: BodyId) -> Disc {
-        let crowded = self.crowd.radius(position, body, (self.shrunk, self.landed.paths));
-        let is_whole = self.crowd.is_inland(position);
-        Disc { position, normal, body, radius: self.radius.min(crowded), is_whole }
+        let at_once = (self.shrunk, self.landed.paths);
+        let (most, is_whole) = self.crowd.disc(position, body, at_once);
+        Disc { position, normal, body, radius: self.radius.min(most), is_whole }
     }
 
     /// Hand on what landed on a disc: where it came from, its flux per m² there, and its light group.
@@ -266,8 +266,4 @@ impl Photons {
             }
         }
     }
-}
-
-pub(super) fn cell(position: DVec3, width: f64) -> IVec3 {
-    (position / width).floor().as_ivec3()
 }

@@ -14,7 +14,10 @@ use lamplit_core::scene::{
 };
 use lamplit_core::spectrum::{SpectralTable, LANES};
 
-pub use crate::measure::{all_are, fresnel, mean_luminance, mean_over_seeds, Estimate, Take, EXACT, SINGLE, STEADY, USUAL, WHOLE};
+pub use crate::measure::{
+    all_are, fresnel, mean_luminance, mean_over_seeds, Estimate, Take, EXACT, SINGLE, STEADY,
+    USUAL, WHOLE,
+};
 
 /// The same value on all lanes.
 pub fn flat(value: f64) -> SpectralTable {

@@ -4,21 +4,14 @@
 use std::f64::consts::FRAC_1_PI;
 
 use crate::math::DVec3;
-use crate::sampling::PixelSampler;
-use crate::scene::Scene;
 use crate::spectrum::SampledSpectrum;
-use crate::transport::disc::Disc;
 use crate::transport::guide::Arrival;
 use crate::transport::photons::Landing;
-use crate::transport::tally::Tally;
 
 use super::branch::{Branch, Seeks};
 use super::purpose::{Carried, Purpose};
 use super::vertex::{Ground, Vertex};
 use super::PathWalk;
-
-/// The most places that are drawn on a disc until one is on its surface.
-const MOST_DRAWN: u32 = 64;
 
 impl PathWalk<'_> {
     /// Let a walk from a light land on the `ground` of a vertex, or else show that it arrives where walks
@@ -77,7 +70,7 @@ impl PathWalk<'_> {
         };
         eye.gathered.met += sent_on;
         let disc = photons.disc(vertex.position, normal, body);
-        let mut whole = None;
+        let mut area = None;
         photons.on(&disc, |landing, irradiance, group| {
             // The surface may be curved: seen is how it answers where the light landed. There it did so
             // on the true surface, whatever its shading.
@@ -92,9 +85,8 @@ impl PathWalk<'_> {
             let agrees = cos * landing.direction.dot(shading) > 0.0;
             let behind = if agrees { met_beyond(f, landing.rivals) } else { 0.0 };
             let share = share(f, branch.rivals + behind);
-            // As if all of the disc were there.
-            let whole = *whole.get_or_insert_with(|| whole_disc(scene, &disc, sampler, tally));
-            let arriving = branch.throughput * answer * irradiance * (share * whole);
+            let area = *area.get_or_insert_with(|| disc.area(scene, sampler, tally));
+            let arriving = branch.throughput * answer * irradiance * (share * area);
             eye.gathered.landed += arriving;
             eye.gathered.add(scene, wavelengths, group, arriving);
         });
@@ -152,28 +144,6 @@ impl PathWalk<'_> {
         let f = (answer / (index * index)).max() / vertex.cosine(wo);
         (f > 0.0 && f.is_finite() && vertex.agrees(wo)).then_some(f)
     }
-}
-
-/// How often a disc is as large as that part of it which is there: a whole number, right on average.
-fn whole_disc(
-    scene: &Scene,
-    disc: &Disc,
-    sampler: &mut PixelSampler,
-    tally: &mut Tally,
-) -> f64 {
-    if disc.is_whole {
-        return 1.0;
-    }
-    for drawn in (0..MOST_DRAWN).step_by(2) {
-        let [a, b, c, d] = sampler.next_4d();
-        for (more, u) in [(1, [a, b]), (2, [c, d])] {
-            tally.shadow_rays += 1;
-            if disc.is_there(scene, u) {
-                return f64::from(drawn + more);
-            }
-        }
-    }
-    f64::from(MOST_DRAWN)
 }
 
 /// The share of light that is answered by `f` here and met elsewhere, too.
