@@ -110,8 +110,10 @@ impl<'a> Landings<'a> {
     pub fn of_batch(&self, number: u32, batch: &Range<u32>, taken: u64) -> Photons {
         let start = self.settings.samples.start;
         let shrunk = (f64::from(start) + f64::from(batch.end)).powf(SHRINKING);
-        let landed = self.land(start.saturating_add(number), self.paths(batch.len(), taken));
+        let number = start.saturating_add(number);
+        let landed = self.land(number, self.paths(batch.len(), taken));
         Photons::new(landed, self.first_radius, shrunk, Arc::clone(&self.crowd))
+            .kept_whole(self.scene, (self.settings.seed, number))
     }
 
     /// How many walks from lights a batch of so many samples has, of which pixels take so many.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 OR MIT
 //! [`Disc`]: the part of a surface round a place on which walks from the eye take what landed.
 //!
-//! Beyond a surface's edge nothing lands, and what landed on a disc there is that of a smaller area. A
-//! place that is drawn on the disc is on the surface with the chance p that is this area's share; so the
-//! number of places that are drawn until one is has the mean 1/p, and makes good what is not there.
+//! What landed near a surface's edge is met on that part of its disc which is on the surface, and has to
+//! weigh more there, so that no light is lost. A place that is drawn on the disc is on the surface with the
+//! chance p that is this part's share; so the number of places that are drawn until one is has the mean 1/p.
 //!
 //! Source: T. Booth, "Unbiased Monte Carlo Estimation of the Reciprocal of an Integral", Nuclear Science and
 //! Engineering 156(3), 2007.
@@ -12,7 +12,6 @@ use std::f64::consts::{PI, TAU};
 
 use rustc_hash::FxHashMap;
 
-use super::tally::Tally;
 use crate::math::{orthonormal_pair, DVec3, IVec3, Ray};
 use crate::sampling::PixelSampler;
 use crate::scene::{BodyId, Face, Scene};
@@ -60,21 +59,22 @@ impl Disc {
         normal.dot(self.normal) > SAME_SURFACE
     }
 
-    /// Its area in those of its part that is there: a whole number, right on average.
-    pub fn area(&self, scene: &Scene, sampler: &mut PixelSampler, tally: &mut Tally) -> f64 {
+    /// How much more what landed in its middle has to weigh, so that none is lost beyond an edge: right on
+    /// average, and a whole number, that of the places drawn.
+    pub fn makes_good(&self, scene: &Scene, mut sampler: PixelSampler) -> u32 {
         if self.is_whole {
-            return 1.0;
+            return 1;
         }
         for drawn in (0..MOST_DRAWN).step_by(2) {
             let [a, b, c, d] = sampler.next_4d();
-            for (more, u) in [(1, [a, b]), (2, [c, d])] {
-                tally.shadow_rays += 1;
-                if self.is_there(scene, u) {
-                    return f64::from(drawn + more);
-                }
+            if self.is_there(scene, [a, b]) {
+                return drawn + 1;
+            }
+            if self.is_there(scene, [c, d]) {
+                return drawn + 2;
             }
         }
-        f64::from(MOST_DRAWN)
+        MOST_DRAWN
     }
 
     /// Whether there is any surface at a place that is drawn on the disc, as often as what landed there

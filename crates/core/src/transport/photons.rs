@@ -32,6 +32,8 @@ use crate::spectrum::{SampledSpectrum, SampledWavelengths};
 
 /// Keeps the random numbers of these walks and of all others apart.
 const TO_LAND: u64 = 0x6A09_E667_F3BC_C909;
+/// The same for the places that are drawn round what landed.
+const TO_FIT: u64 = 0x510E_527F_ADE6_82D1;
 /// Walks that land are independent of threads in so many batches.
 const BATCHES: u32 = 16;
 /// So many of the discs in a cell tell whether surfaces end near it; each looks in four directions, turned by
@@ -199,6 +201,22 @@ impl Photons {
             first += run.len();
         }
         Self { landed, places, cells, radius, shrunk, crowd }
+    }
+
+    /// Let what landed near edges weigh more, so that none of it is lost beyond them; with random numbers that
+    /// no other `number` has.
+    #[must_use]
+    pub fn kept_whole(mut self, scene: &Scene, (seed, number): (u64, u32)) -> Self {
+        let mut photons = std::mem::take(&mut self.landed.photons);
+        let weigh = |(at, photon): (usize, &mut Photon)| {
+            let Landing { position, normal, body, .. } = photon.at;
+            let sampler = PixelSequence::Sobol.sampler(seed ^ TO_FIT, at as u64, number);
+            let drawn = self.disc(position, normal, body).makes_good(scene, sampler);
+            photon.flux *= f64::from(drawn);
+        };
+        photons.par_iter_mut().enumerate().for_each(weigh);
+        self.landed.photons = photons;
+        self
     }
 
     /// Nothing landed.

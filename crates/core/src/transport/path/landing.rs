@@ -64,14 +64,11 @@ impl PathWalk<'_> {
             SampledSpectrum::ONE / (index * index)
         });
         let (scene, wavelengths) = (self.scene, self.wavelengths);
-        let (sampler, tally) = (&mut branch.sampler, &mut *self.tally);
         let Purpose::Eye(eye) = &mut self.purpose else {
             return false;
         };
         eye.gathered.met += sent_on;
-        let disc = photons.disc(vertex.position, normal, body);
-        let mut area = None;
-        photons.on(&disc, |landing, irradiance, group| {
+        photons.on(&photons.disc(vertex.position, normal, body), |landing, irradiance, group| {
             // The surface may be curved: seen is how it answers where the light landed. There it did so
             // on the true surface, whatever its shading.
             let cos = side * landing.direction.dot(landing.normal);
@@ -85,8 +82,7 @@ impl PathWalk<'_> {
             let agrees = cos * landing.direction.dot(shading) > 0.0;
             let behind = if agrees { met_beyond(f, landing.rivals) } else { 0.0 };
             let share = share(f, branch.rivals + behind);
-            let area = *area.get_or_insert_with(|| disc.area(scene, sampler, tally));
-            let arriving = branch.throughput * answer * irradiance * (share * area);
+            let arriving = branch.throughput * answer * irradiance * share;
             eye.gathered.landed += arriving;
             eye.gathered.add(scene, wavelengths, group, arriving);
         });
