@@ -112,8 +112,11 @@ impl<'a> Landings<'a> {
         let shrunk = (f64::from(start) + f64::from(batch.end)).powf(SHRINKING);
         let number = start.saturating_add(number);
         let landed = self.land(number, self.paths(batch.len(), taken));
-        Photons::new(landed, self.first_radius, shrunk, Arc::clone(&self.crowd))
-            .kept_whole(self.scene, (self.settings.seed, number))
+        Photons::new(landed, self.first_radius, shrunk, Arc::clone(&self.crowd)).kept_whole(
+            self.scene,
+            (self.settings.seed, number),
+            &|| self.progress.is_cancelled(),
+        )
     }
 
     /// How many walks from lights a batch of so many samples has, of which pixels take so many.

@@ -60,7 +60,8 @@ impl Disc {
     }
 
     /// How much more what landed in its middle has to weigh, so that none is lost beyond an edge: right on
-    /// average, and a whole number, that of the places drawn.
+    /// average, and a whole number, that of the places drawn. As much as it does where none of them is on a
+    /// surface, which is finer then than its points are known.
     pub fn makes_good(&self, scene: &Scene, mut sampler: PixelSampler) -> u32 {
         if self.is_whole {
             return 1;
@@ -74,7 +75,7 @@ impl Disc {
                 return drawn + 2;
             }
         }
-        MOST_DRAWN
+        1
     }
 
     /// Whether there is any surface at a place that is drawn on the disc, as often as what landed there

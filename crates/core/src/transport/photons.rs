@@ -204,18 +204,27 @@ impl Photons {
     }
 
     /// Let what landed near edges weigh more, so that none of it is lost beyond them; with random numbers that
-    /// no other `number` has.
+    /// no other `number` has. What was cancelled is not to be used.
     #[must_use]
-    pub fn kept_whole(mut self, scene: &Scene, (seed, number): (u64, u32)) -> Self {
-        let mut photons = std::mem::take(&mut self.landed.photons);
-        let weigh = |(at, photon): (usize, &mut Photon)| {
+    pub fn kept_whole(
+        mut self,
+        scene: &Scene,
+        (seed, number): (u64, u32),
+        is_cancelled: &(dyn Fn() -> bool + Sync),
+    ) -> Self {
+        let weight = |(at, photon): (usize, &Photon)| {
             let Landing { position, normal, body, .. } = photon.at;
+            let disc = self.disc(position, normal, body);
+            if is_cancelled() {
+                return 1;
+            }
             let sampler = PixelSequence::Sobol.sampler(seed ^ TO_FIT, at as u64, number);
-            let drawn = self.disc(position, normal, body).makes_good(scene, sampler);
-            photon.flux *= f64::from(drawn);
+            disc.makes_good(scene, sampler)
         };
-        photons.par_iter_mut().enumerate().for_each(weigh);
-        self.landed.photons = photons;
+        let weights: Vec<u32> = self.landed.photons.par_iter().enumerate().map(weight).collect();
+        for (photon, weight) in self.landed.photons.iter_mut().zip(weights) {
+            photon.flux *= f64::from(weight);
+        }
         self
     }
 

@@ -10,6 +10,19 @@ use lamplit_core::scene::{Camera, Projection, Scene, Strength};
 
 use crate::common::*;
 
+/// Square pictures: from where, of what, how high the field is, and how many pixels a side.
+type View = (DVec3, DVec3, f64, u32);
+
+/// What is seen is as bright by light that landed as by path, with so many samples each, to a share `fine`.
+fn is_as_by_path(world: World, view: View, [path, lit]: [u32; 2], fine: f64) {
+    let (eye, at, height, side) = view;
+    let projection = Projection::Orthographic { height };
+    let scene = world.seen_by(Camera::new(eye, at, DVec3::Z, projection).unwrap());
+    let [path, lit] = [Take::of(path, USUAL), Take::lit(lit, USUAL)]
+        .map(|take| mean_over_seeds(&scene, side, &take));
+    lit.is_as(path, fine);
+}
+
 #[test]
 fn a_wall_that_a_lamp_shines_at_is_as_bright_as_by_path_beside_a_frosted_pane_and_behind_it() {
     for height in [-60.0, 60.0] {
@@ -19,13 +32,8 @@ fn a_wall_that_a_lamp_shines_at_is_as_bright_as_by_path_beside_a_frosted_pane_an
         world.add(matt(0.6), cuboid(DVec3::new(20.0, -20.0, -20.0), DVec3::new(22.0, 20.0, 20.0)));
         let pane = cuboid(DVec3::new(2.0, 6.0, -8.0), DVec3::new(19.5, 8.0, 8.0));
         world.add_rough(glass(1.5), 0.3, pane);
-        let eye = DVec3::new(-20.0, height, 1.0);
-        let projection = Projection::Orthographic { height: 4.0 };
-        let at = DVec3::new(20.0, -4.0, 0.0);
-        let scene = world.seen_by(Camera::new(eye, at, DVec3::Z, projection).unwrap());
-        let [path, lit] = [Take::of(1 << 8, USUAL), Take::lit(1 << 5, USUAL)]
-            .map(|take| mean_over_seeds(&scene, 32, &take));
-        lit.is_as(path, 0.06);
+        let view = (DVec3::new(-20.0, height, 1.0), DVec3::new(20.0, -4.0, 0.0), 4.0, 32);
+        is_as_by_path(world, view, [1 << 8, 1 << 5], 0.06);
     }
 }
 
@@ -37,12 +45,8 @@ fn light_that_crosses_a_frosted_film_is_seen_once_however_thin_it_is() {
     world.shine(lamp, Strength::Flux(flat(2.0)), 1);
     let film = cuboid(DVec3::new(-12.0, 6.0, -12.0), DVec3::new(12.0, 6.02, 12.0));
     world.add_rough(glass(1.5), 0.3, film);
-    let (eye, at) = (DVec3::new(30.0, 60.0, 5.0), DVec3::new(1.0, 6.0, 0.0));
-    let projection = Projection::Orthographic { height: 4.0 };
-    let scene = world.seen_by(Camera::new(eye, at, DVec3::Z, projection).unwrap());
-    let [path, lit] = [Take::of(1 << 5, USUAL), Take::lit(1 << 4, USUAL)]
-        .map(|take| mean_over_seeds(&scene, 32, &take));
-    lit.is_as(path, 0.02);
+    let view = (DVec3::new(30.0, 60.0, 5.0), DVec3::new(1.0, 6.0, 0.0), 4.0, 32);
+    is_as_by_path(world, view, [1 << 5, 1 << 4], 0.02);
 }
 
 /// A lamp that shines up at a mirror alone, `above` it.
@@ -132,22 +136,8 @@ fn light_that_is_mirrored_to_a_curved_mirror_leaves_it_as_it_is_curved_where_it_
     world.add(aluminium(), disc(DVec3::new(0.0, 20.0, 0.0), -DVec3::Y, 24.0));
     collimator(&mut world);
     // Its middle, away from its edges: discs are a quarter of it.
-    let projection = Projection::Orthographic { height: 8.0 };
     let at = DVec3::new(38.0, -20.0, 0.0);
-    let eye = at + 200.0 * DVec3::Y;
-    let scene = world.seen_by(Camera::new(eye, at, DVec3::Z, projection).unwrap());
-    let [path, lit] = [Take::of(1 << 12, USUAL), Take::lit(1 << 8, USUAL)]
-        .map(|take| mean_over_seeds(&scene, 4, &take));
-    lit.is_as(path, 0.02);
-}
-
-/// What is seen of `at` from a direction, over a square field of `height`, by path and by light that landed.
-fn is_as_by_path(world: World, (at, from): (DVec3, DVec3), height: f64, [path, lit]: [u32; 2]) {
-    let projection = Projection::Orthographic { height };
-    let scene = world.seen_by(Camera::new(at + from, at, DVec3::Z, projection).unwrap());
-    let [path, lit] = [Take::of(path, USUAL), Take::lit(lit, USUAL)]
-        .map(|take| mean_over_seeds(&scene, 8, &take));
-    lit.is_as(path, 0.015);
+    is_as_by_path(world, (at + 200.0 * DVec3::Y, at, 8.0, 4), [1 << 12, 1 << 8], 0.02);
 }
 
 #[test]
@@ -157,16 +147,18 @@ fn a_small_frosted_pane_is_as_bright_as_by_path_up_to_its_edges() {
     world.shine(lamp, Strength::Flux(flat(2.0)), 1);
     let pane = cuboid(DVec3::new(-3.0, 6.0, -3.0), DVec3::new(3.0, 8.0, 3.0));
     world.add_rough(glass(1.5), 0.3, pane);
-    let seen = (DVec3::new(0.0, 7.0, 0.0), DVec3::new(40.0, 60.0, 5.0));
-    is_as_by_path(world, seen, 8.0, [1 << 9, 1 << 7]);
+    let at = DVec3::new(0.0, 7.0, 0.0);
+    let eye = at + DVec3::new(40.0, 60.0, 5.0);
+    is_as_by_path(world, (eye, at, 8.0, 8), [1 << 9, 1 << 7], 0.015);
 }
 
 #[test]
 fn a_small_glossy_mirror_is_as_bright_as_by_path_up_to_its_edges() {
     let mut world = under_mirror(20.0, 6.0);
     world.add_rough(aluminium(), 0.2, disc(DVec3::new(14.0, -20.0, 0.0), DVec3::Y, 4.0));
-    let seen = (DVec3::new(14.0, -20.0, 0.0), DVec3::new(14.0, 60.0, 0.0));
-    is_as_by_path(world, seen, 10.0, [1 << 11, 1 << 9]);
+    let at = DVec3::new(14.0, -20.0, 0.0);
+    let eye = at + DVec3::new(14.0, 60.0, 0.0);
+    is_as_by_path(world, (eye, at, 10.0, 8), [1 << 11, 1 << 9], 0.015);
 }
 
 #[test]
@@ -175,8 +167,9 @@ fn a_floor_is_as_bright_as_by_path_up_to_what_stands_on_it() {
     world.add(matt(0.6), plate(-21.0, -20.0));
     let block = cuboid(DVec3::new(10.0, -20.0, -6.0), DVec3::new(14.0, -18.0, 6.0));
     world.add(matt(0.0), block);
-    let seen = (DVec3::new(14.0, -20.0, 0.0), DVec3::new(30.0, 80.0, 5.0));
-    is_as_by_path(world, seen, 8.0, [1 << 12, 1 << 8]);
+    let at = DVec3::new(14.0, -20.0, 0.0);
+    let eye = at + DVec3::new(30.0, 80.0, 5.0);
+    is_as_by_path(world, (eye, at, 8.0, 8), [1 << 12, 1 << 8], 0.015);
 }
 
 #[test]
